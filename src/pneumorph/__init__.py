@@ -1,0 +1,1 @@
+"""pneumorph: soft pneumatic actuators from parameters to inflated shape."""

@@ -1,0 +1,20 @@
+"""Actuator templates: frozen, checked dimensions that make a solid with named faces and cavities."""
+
+from pneumorph.geometry.actuator import Actuator, Dimension
+from pneumorph.geometry.cad import export
+from pneumorph.geometry.finger import Finger
+from pneumorph.geometry.hexagonal_prism import HexagonalPrism
+from pneumorph.geometry.pneunet import PneuNet
+from pneumorph.geometry.thick_sphere import ThickSphere
+from pneumorph.geometry.thick_tube import ThickTube
+
+__all__ = [
+    "Actuator",
+    "Dimension",
+    "Finger",
+    "HexagonalPrism",
+    "PneuNet",
+    "ThickSphere",
+    "ThickTube",
+    "export",
+]

@@ -1,0 +1,170 @@
+"""Hexagonal column with one rectangular cavity assembly on each of its six flat sides (Wang et al. 2022)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pneumorph.geometry import occ
+from pneumorph.geometry.actuator import Actuator, millimetres, whole_number
+
+SIDES = 6
+
+
+@dataclass(frozen=True)
+class HexagonalPrism(Actuator):
+    """Hexagonal-prism bending and expanding actuator; lengths in mm.
+
+    The column stands on the clamped end (z = 0, face "clamp") and ends in "tip"; both are hexagonal rings, because the
+    hollow core goes through the whole length and is open at both ends (its wall is the face "core", never pressurised).
+    On each flat side stands one assembly of `chambers` air chambers in a row, centred along the length: `cavity_1`
+    looks along x, the others follow anticlockwise seen from the tip. Chambers are separate blocks with gaps between
+    them; the airway runs through the gaps on the column's side inside a small bridge. Blocks as wide as the column's
+    side touch the next assembly along the hexagon's edge only, which leaves a 60 degree groove and a clean solid.
+
+    Source: Wang, Zhang, Zhang, Zhao, Peng, Actuators 2022, 11, 125, Table 1 and Figure 5. Raises GeometryError.
+    """
+
+    side: float = millimetres(20.0, "a", "side of the hexagon", given=True)
+    length: float = millimetres(112.0, "l", "length of the column", given=True)
+    core_radius: float = millimetres(14.0, "r", "radius of the hollow core", given=True)
+    chambers: int = whole_number(11, "N", "air chambers of one cavity", given=True)
+    chamber_height: float = millimetres(19.0, "h2", "height of the air chamber, radial", given=True)
+    chamber_width: float = millimetres(14.0, "w2", "width of the air chamber, tangential", given=True)
+    chamber_length: float = millimetres(4.0, "l2", "length of the air chamber, axial", given=True)
+    expansion_wall: float = millimetres(2.0, "l1", "wall between a chamber and the gap", given=True)
+    gap: float = millimetres(2.0, "l3", "gap between neighbouring chambers' walls")
+    top_wall: float = millimetres(3.0, "h1", "wall on top of a chamber")
+    side_wall: float = millimetres(3.0, "w1", "wall beside a chamber")
+    airway_width: float = millimetres(3.0, "w3", "width of the airway")
+    airway_height: float = millimetres(3.0, "h3", "height of the airway")
+    airway_roof: float = millimetres(1.5, "h4", "wall of the bridge above the airway")
+    airway_side: float = millimetres(1.5, "w4", "wall of the bridge beside the airway")
+
+    @property
+    def cavities(self) -> tuple[str, ...]:
+        """cavity_1 to cavity_6, in order around the column."""
+        return tuple(f"cavity_{i + 1}" for i in range(SIDES))
+
+    @property
+    def face_names(self) -> tuple[str, ...]:
+        """clamp, tip, outer, core and the cavities."""
+        return ("clamp", "tip", "outer", "core", *self.cavities)
+
+    @property
+    def bending_walls(self) -> Mapping[str, float]:
+        """Expansion, top and side walls, and the roof of the airway."""
+        walls = {"expansion_wall": self.expansion_wall, "top_wall": self.top_wall, "side_wall": self.side_wall}
+        return walls | ({"airway_roof": self.airway_roof} if self.chambers > 1 else {})
+
+    @property
+    def default_size(self) -> float:
+        """Two fifths of the side, 8 mm by default."""
+        return 0.4 * self.side
+
+    @property
+    def face_sizes(self) -> Mapping[str, float]:
+        """About thirteen edges around the core, so that its thin wall keeps its thickness."""
+        return {"core": 0.5 * self.core_radius}
+
+    @property
+    def apothem(self) -> float:
+        """Distance of the flat sides from the axis, mm."""
+        return self.side * math.sqrt(3.0) / 2.0
+
+    @property
+    def block_length(self) -> float:
+        """Outer length of one chamber, La = 2 l1 + l2, mm."""
+        return 2.0 * self.expansion_wall + self.chamber_length
+
+    @property
+    def block_width(self) -> float:
+        """Outer width of one chamber, Wa = 2 w1 + w2, mm."""
+        return 2.0 * self.side_wall + self.chamber_width
+
+    @property
+    def block_height(self) -> float:
+        """Outer height of one chamber, Ha = h1 + h2, mm."""
+        return self.top_wall + self.chamber_height
+
+    @property
+    def assembly_length(self) -> float:
+        """Length of the row of chambers, N La + (N - 1) l3, mm."""
+        return self.chambers * self.block_length + (self.chambers - 1) * self.gap
+
+    @property
+    def cavity_volume(self) -> float:
+        """Air in one cavity: N l2 w2 h2 + (N - 1) (l3 + 2 l1) w3 h3, mm³."""
+        chamber = self.chamber_length * self.chamber_width * self.chamber_height
+        airway = (self.gap + 2.0 * self.expansion_wall) * self.airway_width * self.airway_height
+        return self.chambers * chamber + (self.chambers - 1) * airway
+
+    def _check_fit(self) -> None:
+        self._require(
+            self.core_radius < self.apothem,
+            f"core_radius = {self.core_radius:g} mm leaves no wall: expected less than {self.apothem:.4g} mm "
+            "(side * sqrt(3) / 2)",
+        )
+        self._require(
+            self.assembly_length <= self.length + 1e-9,
+            f"the chambers overlap or do not fit: {self.chambers} * (chamber_length + 2 * expansion_wall) + "
+            f"{self.chambers - 1} * gap = {self.assembly_length:g} mm, expected at most length = {self.length:g} mm",
+        )
+        self._require(
+            self.block_width <= self.side + 1e-9,
+            f"neighbouring cavities overlap: chamber_width + 2 * side_wall = {self.block_width:g} mm, expected at most "
+            f"side = {self.side:g} mm",
+        )
+        self._require(
+            self.airway_width <= self.chamber_width,
+            f"airway_width = {self.airway_width:g} mm: expected at most chamber_width = {self.chamber_width:g} mm",
+        )
+        self._require(
+            self.airway_height <= self.chamber_height,
+            f"airway_height = {self.airway_height:g} mm: expected at most chamber_height = {self.chamber_height:g} mm",
+        )
+        self._require(
+            self.airway_width + 2.0 * self.airway_side <= self.block_width,
+            f"the airway's bridge, airway_width + 2 * airway_side = {self.airway_width + 2.0 * self.airway_side:g} mm, "
+            f"is wider than a chamber's block: expected at most {self.block_width:g} mm",
+        )
+        self._require(
+            self.airway_height + self.airway_roof <= self.block_height,
+            f"the airway's bridge, airway_height + airway_roof = {self.airway_height + self.airway_roof:g} mm, is "
+            f"higher than a chamber's block: expected at most {self.block_height:g} mm",
+        )
+
+    def shape(self) -> occ.Shape:
+        """Return the solid; its faces are clamp, tip, core, outer and cavity_1 to cavity_6."""
+        outline = occ.regular_polygon(SIDES, self.side, math.pi / SIDES)
+        column = occ.prism(outline, 0.0, self.length, "clamp", "tip")
+        column = occ.cut(column, [occ.cylinder(self.core_radius, 0.0, self.length, "core")])
+        solids = [column]
+        air = []
+        for i, name in enumerate(self.cavities):
+            silicone, hollow = self._assembly(name)
+            solids += [occ.turned(part, 60.0 * i) for part in silicone]
+            air.append(occ.turned(occ.fused(hollow), 60.0 * i))
+        return occ.check_solid(occ.cut(occ.fused(solids), air), 1, "HexagonalPrism")
+
+    def _assembly(self, name: str) -> tuple[list[occ.Shape], list[occ.Shape]]:
+        """Return the silicone blocks and the air boxes of the assembly on the side that looks along x."""
+        floor = self.apothem
+        silicone: list[occ.Shape] = []
+        air: list[occ.Shape] = []
+
+        def add(parts: list[occ.Shape], height: float, width: float, low: float, high: float, face: str | None) -> None:
+            parts.append(occ.box((floor, -width / 2.0, low), (floor + height, width / 2.0, high), face))
+
+        for i in range(self.chambers):
+            low = (self.length - self.assembly_length) / 2.0 + i * (self.block_length + self.gap)
+            high = low + self.block_length
+            wall = self.expansion_wall
+            add(silicone, self.block_height, self.block_width, low, high, None)
+            add(air, self.chamber_height, self.chamber_width, low + wall, high - wall, name)
+            if i < self.chambers - 1:
+                bridge = (self.airway_height + self.airway_roof, self.airway_width + 2.0 * self.airway_side)
+                add(silicone, *bridge, high, high + self.gap, None)
+                add(air, self.airway_height, self.airway_width, high - wall, high + self.gap + wall, name)
+        return silicone, air

@@ -1,0 +1,281 @@
+"""Adapter to Netgen: solids with named faces (Open CASCADE), and their meshing into plain arrays.
+
+No other module imports netgen. A `Shape` is opaque outside this file.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyngcore
+from netgen import meshing, occ
+from numpy.typing import NDArray
+
+from pneumorph.errors import EngineError, GeometryError, MeshError
+from pneumorph.geometry.quiet import caught_output
+
+Shape = Any
+Point = tuple[float, float, float]
+
+# Netgen lists the mid-edge nodes as 01 02 03 12 13 23 (tetrahedron) and 12 02 01 (triangle); VTK as below.
+_TETRA10 = [0, 1, 2, 3, 4, 7, 5, 6, 8, 9]
+_TRIANGLE6 = [0, 1, 2, 5, 3, 4]
+
+# Netgen's default passes and a second round of them with splitting: fewer slivers at little cost
+_OPTIMIZE = "cmdDmustmcmdDmustm"
+# At a large size surfaces of thin walls may cross, or slivers remain; a smaller one keeps the promise of a largest edge
+_TRIES = (1.0, 0.9, 0.8, 0.65)
+_GOOD = 0.05
+
+meshing.SetMessageImportance(0)
+
+
+@dataclass(frozen=True, eq=False)
+class RawMesh:
+    """What Netgen returns: points (n, 3) in mm; cells (m, 10) and triangles (k, 6) in VTK's node order.
+
+    domain (m,) indexes `domains`; face (k,) indexes `face_names`. Triangles are those of the outer boundary only.
+    """
+
+    points: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    domain: NDArray[np.int64]
+    domains: tuple[str, ...]
+    triangles: NDArray[np.int64]
+    face: NDArray[np.int64]
+    face_names: tuple[str, ...]
+
+
+# --- solids ---------------------------------------------------------------------------------------------------------
+
+
+def box(low: Point, high: Point, name: str | None = None) -> Shape:
+    """Return the box between two corners, all its faces named `name`."""
+    return named(occ.Box(occ.Pnt(*low), occ.Pnt(*high)), name)
+
+
+def prism(outline: Sequence[tuple[float, float]], z0: float, z1: float, bottom: str, top: str) -> Shape:
+    """Return a polygon in the xy plane (anticlockwise corners) extruded from z0 to z1, its end faces named."""
+    plane = occ.WorkPlane(occ.Axes(occ.Pnt(0, 0, z0), occ.Z, occ.X)).MoveTo(*outline[0])
+    for corner in outline[1:]:
+        plane.LineTo(*corner)
+    solid = plane.Close().Face().Extrude((z1 - z0) * occ.Z)
+    solid.faces.Min(occ.Z).name = bottom
+    solid.faces.Max(occ.Z).name = top
+    return solid
+
+
+def side_prism(profile: Sequence[tuple[float, float]], y0: float, y1: float) -> Shape:
+    """Return a profile of (x, z) corners, anticlockwise seen from -y, extruded from y0 to y1."""
+    # local x is the global x and local y the global z for a plane that looks along -y
+    plane = occ.WorkPlane(occ.Axes(occ.Pnt(0, y1, 0), -occ.Y, occ.X)).MoveTo(*profile[0])
+    for corner in profile[1:]:
+        plane.LineTo(*corner)
+    return plane.Close().Face().Extrude((y0 - y1) * occ.Y)
+
+
+def cylinder(radius: float, z0: float, z1: float, name: str | None = None) -> Shape:
+    """Return a cylinder about the z axis, all its faces named `name`."""
+    return named(occ.Cylinder(occ.Pnt(0, 0, z0), occ.Z, r=radius, h=z1 - z0), name)
+
+
+def sphere(radius: float, name: str | None = None) -> Shape:
+    """Return a sphere about the origin, its face named `name`."""
+    return named(occ.Sphere(occ.Pnt(0, 0, 0), radius), name)
+
+
+def named(shape: Shape, name: str | None) -> Shape:
+    """Give all faces of a shape one name; cuts and unions keep it."""
+    if name is not None:
+        shape.faces.name = name
+    return shape
+
+
+def name_end_faces(shape: Shape, direction: Point, low: str, high: str) -> Shape:
+    """Name the outermost face on either side of a direction."""
+    shape.faces.Min(occ.Vec(*direction)).name = low
+    shape.faces.Max(occ.Vec(*direction)).name = high
+    return shape
+
+
+def name_low_faces(shape: Shape, names: dict[str, str]) -> Shape:
+    """Name the lowest face of a shape in each of the directions "x", "y", "z" that is given."""
+    for direction, name in names.items():
+        shape.faces.Min({"x": occ.X, "y": occ.Y, "z": occ.Z}[direction]).name = name
+    return shape
+
+
+def turned(shape: Shape, degrees: float) -> Shape:
+    """Return the shape turned about the z axis."""
+    return shape.Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.Z), degrees)
+
+
+def fused(shapes: Iterable[Shape]) -> Shape:
+    """Return the union of shapes."""
+    everything = list(shapes)
+    return everything[0] if len(everything) == 1 else occ.Fuse(everything)
+
+
+def cut(shape: Shape, tools: Iterable[Shape]) -> Shape:
+    """Return the shape without the tools; the new faces keep the tools' names."""
+    for tool in tools:
+        shape = shape - tool
+    return shape
+
+
+def common(shape: Shape, other: Shape) -> Shape:
+    """Return what two shapes share; faces keep their names."""
+    return shape * other
+
+
+def bonded(parts: Sequence[tuple[Shape, str]]) -> Shape:
+    """Return solids of several material domains that share the faces (and later the nodes) where they touch."""
+    for solid, domain in parts:
+        solid.mat(domain)
+    return occ.Glue([solid for solid, _ in parts])
+
+
+def volume(shape: Shape) -> float:
+    """Return the volume in mm³."""
+    return float(shape.mass)
+
+
+def check_solid(shape: Shape, solids: int, what: str) -> Shape:
+    """Return the shape if it consists of that many solids with volume; raises GeometryError if not."""
+    found = list(shape.solids)
+    if len(found) != solids or any(solid.mass <= 0.0 for solid in found):
+        raise GeometryError(f"{what}: the dimensions make {len(found)} separate solids, expected {solids}")
+    return shape
+
+
+def write_step(shape: Shape, path: Path) -> None:
+    """Write a STEP file in mm."""
+    try:
+        shape.WriteStep(str(path))
+    except Exception as error:
+        raise EngineError(f"'{path}': Open CASCADE cannot write this STEP file ({error})") from error
+
+
+# --- meshing --------------------------------------------------------------------------------------------------------
+
+
+def mesh_solid(
+    shape: Shape, *, size: float, grading: float, detail: float, face_sizes: dict[str, float] | None = None
+) -> RawMesh:
+    """Return the mesh of 10-node tetrahedra of a solid; mid-edge nodes lie on curved faces.
+
+    size: largest edge (mm). grading: how fast the size may change, 0 (slowly) to 1. detail: segments for each edge of
+    the solid; below 1 short edges do not refine their surroundings. face_sizes: largest edge on named faces (mm).
+    Where Netgen fails or leaves slivers it tries again with a smaller size, down to 0.65 of it. One thread, so that
+    equal input gives an equal mesh. Unnamed faces become "outer", unnamed domains "body". Raises MeshError if Netgen
+    fails.
+    """
+    _set_face_sizes(shape, face_sizes or {})
+    mesh = _run_netgen(shape, size, grading, detail, surface_only=False)
+    mesh.SecondOrder()
+    points = np.array(mesh.Coordinates(), dtype=np.float64)
+    cells, domain = _arrays(mesh.Elements3D(), 10)
+    triangles, region = _arrays(mesh.Elements2D(), 6)
+    descriptors = [mesh.FaceDescriptor(i + 1) for i in range(mesh.GetNFaceDescriptors())]
+    names = [_face_name(descriptor.bcname) for descriptor in descriptors]
+    # a face with a domain on both sides is a bond inside the body, not boundary
+    inner = np.array([descriptor.domin > 0 and descriptor.domout > 0 for descriptor in descriptors])
+    outside = ~inner[region]
+    face_names = tuple(sorted(set(names)))
+    face = np.array([face_names.index(name) for name in names])[region[outside]]
+    count = int(domain.max()) + 1
+    domains = [_domain_name(mesh.GetMaterial(i + 1)) for i in range(count)]
+    unique = tuple(dict.fromkeys(domains))
+    domain = np.array([unique.index(name) for name in domains])[domain]
+    return RawMesh(points, cells[:, _TETRA10], domain, unique, triangles[outside][:, _TRIANGLE6], face, face_names)
+
+
+def surface(shape: Shape, *, size: float, grading: float = 0.8) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return a closed triangulated surface of a solid: points (n, 3) in mm, triangles (k, 3) with outward normals."""
+    mesh = _run_netgen(shape, size, grading, 1.0, surface_only=True)
+    triangles, region = _arrays(mesh.Elements2D(), 3)
+    descriptors = [mesh.FaceDescriptor(i + 1) for i in range(mesh.GetNFaceDescriptors())]
+    boundary = np.array([d.domin == 0 or d.domout == 0 for d in descriptors])[region]
+    flipped = np.array([d.domin == 0 for d in descriptors])[region]
+    triangles[flipped] = triangles[flipped][:, ::-1]
+    return np.array(mesh.Coordinates(), dtype=np.float64), triangles[boundary]
+
+
+def _set_face_sizes(shape: Shape, sizes: dict[str, float]) -> None:
+    # a face hands its size on to its edges, so the small ones come last
+    shape.faces.maxh = 1e99
+    for face in shape.faces:
+        if _face_name(face.name) in sizes:
+            face.maxh = sizes[_face_name(face.name)]
+
+
+def _run_netgen(shape: Shape, size: float, grading: float, detail: float, surface_only: bool) -> Any:
+    """Return Netgen's mesh of straight cells: the first without slivers, else the best of all tries."""
+    last = meshing.MeshingStep.MESHSURFACE if surface_only else meshing.MeshingStep.MESHVOLUME
+    settings = {"grading": grading, "segmentsperedge": detail, "perfstepsend": last, "optimize3d": _OPTIMIZE}
+    if detail < 1.0:
+        settings["curvaturesafety"] = 1.0
+    best, best_quality, reason = None, 0.0, "flat or inverted tetrahedra"
+    threads = pyngcore.GetNumThreads()
+    pyngcore.SetNumThreads(1)
+    try:
+        for factor in _TRIES:
+            try:
+                with caught_output() as printed:
+                    mesh = occ.OCCGeometry(shape).GenerateMesh(maxh=factor * size, **settings)
+            except Exception as error:  # Netgen and Open CASCADE raise several unrelated types
+                reason = " / ".join([str(error), *printed.text.strip().splitlines()[-1:]])
+                continue
+            quality = 1.0 if surface_only else _smallest_quality(mesh)
+            if quality >= _GOOD:
+                return mesh
+            if quality > best_quality:
+                best, best_quality = mesh, quality
+    finally:
+        pyngcore.SetNumThreads(threads)
+    if best is not None:
+        return best
+    where = " to ".join(str(tuple(round(v, 3) + 0.0 for v in corner)) for corner in _corners(shape))
+    sizes = ", ".join(f"{factor * size:.3g}" for factor in _TRIES)
+    raise MeshError(f"Netgen cannot mesh the solid in {where} mm at sizes {sizes} mm: {reason}")
+
+
+def _smallest_quality(mesh: Any) -> float:
+    """Return the worst 6 sqrt(2) V / sqrt(product of the edges) of the tetrahedra: 1 if regular, 0 if flat."""
+    cells, _ = _arrays(mesh.Elements3D(), 4)
+    if len(cells) == 0:
+        return 0.0
+    corners = np.array(mesh.Coordinates(), dtype=np.float64)[cells]
+    volume6 = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
+    edges = np.linalg.norm(corners[:, [0, 0, 0, 1, 1, 2]] - corners[:, [1, 2, 3, 2, 3, 3]], axis=2)
+    return float((np.sqrt(2.0) * volume6 / np.sqrt(edges.prod(axis=1))).min())
+
+
+def _corners(shape: Shape) -> list[Point]:
+    return [(p.x, p.y, p.z) for p in shape.bounding_box]
+
+
+def _arrays(elements: Any, nodes: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return node numbers (m, nodes) and region numbers (m,), both from 0."""
+    table = elements.NumPy()
+    return table["nodes"][:, :nodes].astype(np.int64) - 1, table["index"].astype(np.int64) - 1
+
+
+def _face_name(name: str | None) -> str:
+    return name if name and name != "default" else "outer"
+
+
+def _domain_name(name: str | None) -> str:
+    return name if name and name != "default" else "body"
+
+
+def regular_polygon(sides: int, edge: float, first_angle: float) -> list[tuple[float, float]]:
+    """Return the corners of a regular polygon of given edge length, the first at `first_angle` (rad) from x."""
+    radius = edge / (2.0 * math.sin(math.pi / sides))
+    angles = [first_angle + 2.0 * math.pi * i / sides for i in range(sides)]
+    return [(radius * math.cos(angle), radius * math.sin(angle)) for angle in angles]

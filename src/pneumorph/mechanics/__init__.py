@@ -1,0 +1,16 @@
+"""The solver: models, programmes and the load stepping that yields converged states."""
+
+from pneumorph.mechanics.cavity import Cavity
+from pneumorph.mechanics.continuation import march
+from pneumorph.mechanics.loads import Force, Gravity, Traction
+from pneumorph.mechanics.model import Model
+from pneumorph.mechanics.newton import Settings
+from pneumorph.mechanics.programme import Phase, Programme
+from pneumorph.mechanics.state import Energies, State
+from pneumorph.mechanics.supply import PressureSupply, Supply, VolumeSupply
+from pneumorph.mechanics.supports import Clamp, Prescribed, Roller, Symmetry
+
+__all__ = [
+    "Cavity", "Clamp", "Energies", "Force", "Gravity", "Model", "Phase", "Prescribed", "PressureSupply", "Programme",
+    "Roller", "Settings", "State", "Supply", "Symmetry", "Traction", "VolumeSupply", "march",
+]  # fmt: skip

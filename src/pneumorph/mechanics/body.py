@@ -1,0 +1,169 @@
+"""The deformable body: element arrays of a mesh with its materials, and what they add up to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumorph.materials import Material
+from pneumorph.mechanics import kernels
+from pneumorph.mechanics.pattern import Pattern
+from pneumorph.mechanics.tables import CellTable, cell_table
+from pneumorph.mesh.mesh import CellBlock, Mesh
+from pneumorph.threads import parallel, slices
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """One thread's cells of one block; `slots` place their matrices in the pattern."""
+
+    cells: NDArray[np.int64]
+    slots: NDArray[np.int32]
+    material: Material
+    table: CellTable
+    sizes: tuple[tuple[int, ...], ...]
+    block: int
+    part: slice
+
+
+@dataclass(eq=False)
+class Assembly:
+    """What one pass over the elements gives.
+
+    force (nodes * d,): internal force with the pressure condensed; values: tangent in the pattern's order;
+    gains: for each piece K M^-1 r_q (cells, k) and K M^-1 B' (cells, k, d, n), for the pressure update.
+    """
+
+    force: Array
+    values: Array
+    gains: list[tuple[Array, Array]]
+
+
+class Body:
+    """Elements of a mesh, ready to be integrated on all threads.
+
+    pressure: 'linear' (four modes in a solid cell, three in a plane one; discontinuous) or 'constant'.
+    The pressure state is a list with one array (cells, modes) for each block of the mesh.
+    """
+
+    def __init__(self, mesh: Mesh, materials: dict[str, Material], pressure: str = "linear"):
+        self.mesh = mesh
+        self.dimension = mesh.dimension
+        self.pattern = Pattern.of_cells(len(mesh.points), self.dimension, (b.nodes for b in mesh.blocks))
+        self.unknowns = mesh.points.size
+        self.tables = [cell_table(block.kind, pressure) for block in mesh.blocks]
+        self._materials = [materials[block.domain] for block in mesh.blocks]
+        self._teams = self._divide()
+
+    def _divide(self) -> list[list[Piece]]:
+        """Return, for each thread, its pieces; each thread adds into arrays of its own."""
+        teams: list[list[Piece]] = []
+        for i, (block, table, material) in enumerate(zip(self.mesh.blocks, self.tables, self._materials, strict=True)):
+            sizes = kernels.sizes_of(
+                block.nodes.shape[1], self.dimension, table.modes.shape[1], self.mesh.space == "axisymmetric"
+            )
+            for thread, part in enumerate(slices(len(block.nodes))):
+                cells = np.ascontiguousarray(block.nodes[part], dtype=np.int64)
+                piece = Piece(cells, self.pattern.slots(cells), material, table, sizes, i, part)
+                if thread == len(teams):
+                    teams.append([])
+                teams[thread].append(piece)
+        return teams
+
+    def zero_pressure(self) -> list[Array]:
+        """Return the pressure modes of the reference state."""
+        pairs = zip(self.mesh.blocks, self.tables, strict=True)
+        return [np.zeros((len(block.nodes), table.modes.shape[1])) for block, table in pairs]
+
+    def assemble(self, position: Array, pressure: list[Array], tangent: bool = True) -> Assembly:
+        """Return internal forces and, with `tangent`, the stiffness at deformed nodes (nodes, d)."""
+        points = self.mesh.points
+
+        def work(team: list[Piece]) -> Assembly:
+            result = Assembly(np.zeros(self.unknowns), np.zeros(self.pattern.indptr[-1] if tangent else 0), [])
+            for piece in team:
+                table = piece.table
+                c, _ = self._deformation(piece, position)
+                stress, moduli = piece.material.stress_and_tangent(c.reshape(-1, 6))
+                count, modes, nodes = len(piece.cells), table.modes.shape[1], piece.cells.shape[1]
+                constant = np.zeros((count, modes) if tangent else (0, modes))
+                gain = np.zeros((count if tangent else 0, modes, self.dimension, nodes))
+                kernels.integrate(
+                    piece.sizes, points, position, piece.cells, table.shape, table.gradient, table.weight, table.modes,
+                    piece.material.bulk_modulus, pressure[piece.block][piece.part],
+                    stress.reshape(count, -1, 6), moduli.reshape(count, -1, 21), piece.slots, self.pattern.indptr,
+                    result.force, result.values, constant, gain, tangent,
+                )  # fmt: skip
+                result.gains.append((constant, gain))
+            return result
+
+        parts = parallel(work, self._teams)
+        total = parts[0]
+        for part in parts[1:]:
+            total.force += part.force
+            total.values += part.values
+            total.gains += part.gains
+        return total
+
+    def pressure_step(self, gains: list[tuple[Array, Array]], step: Array) -> list[Array]:
+        """Return the change of the pressure modes that goes with a displacement step (nodes, d)."""
+        result = self.zero_pressure()
+        pieces = [piece for team in self._teams for piece in team]
+        for piece, (constant, gain) in zip(pieces, gains, strict=True):
+            moved = np.ascontiguousarray(step[piece.cells].transpose(0, 2, 1)).reshape(len(piece.cells), -1, 1)
+            change = np.matmul(gain.reshape(*gain.shape[:2], -1), moved)[:, :, 0]
+            result[piece.block][piece.part] = constant + change
+        return result
+
+    def energies(self, position: Array, pressure: list[Array]) -> tuple[float, float]:
+        """Return (condensed energy max over q of L(u, q), mixed energy L(u, q)), mJ."""
+
+        def work(team: list[Piece]) -> Array:
+            total = np.zeros(2)
+            for piece in team:
+                table = piece.table
+                c, _ = self._deformation(piece, position)
+                density = piece.material.energy(c.reshape(-1, 6)).reshape(c.shape[:2])
+                isochoric, condensed, mixed = kernels.volumetric(
+                    piece.sizes, self.mesh.points, position, piece.cells, table.shape, table.gradient, table.weight,
+                    table.modes, piece.material.bulk_modulus, pressure[piece.block][piece.part], density,
+                )  # fmt: skip
+                total += isochoric + np.array([condensed, mixed])
+            return total
+
+        condensed, mixed = np.sum(parallel(work, self._teams), axis=0)
+        return float(condensed), float(mixed)
+
+    def smallest_volume_ratio(self, position: Array, fine: bool) -> float:
+        """Return the smallest det F at the quadrature points or, `fine`, at a finer rule's points and the nodes."""
+
+        def work(team: list[Piece]) -> float:
+            return min(self._deformation(piece, position, fine)[1] for piece in team)
+
+        return min(parallel(work, self._teams))
+
+    def _deformation(self, piece: Piece, position: Array, fine: bool = False) -> tuple[Array, float]:
+        table = piece.table
+        shape = table.check_shape if fine else table.shape
+        gradient = table.check_gradient if fine else table.gradient
+        c = np.empty((len(piece.cells), len(shape), 6))
+        ratio = np.empty(c.shape[:2])
+        smallest = kernels.deformation(
+            piece.sizes, self.mesh.points, position, piece.cells, shape, gradient, c, ratio
+        )
+        return c, smallest
+
+
+def cell_volumes(mesh: Mesh, block: CellBlock) -> Array:
+    """Return the reference volume (cells, q) that each quadrature point of a block stands for, mm3."""
+    table = cell_table(block.kind)
+    x = mesh.points[block.nodes]
+    jacobian = np.einsum("qmj,emi->eqij", table.gradient, x)
+    volume = np.linalg.det(jacobian) * table.weight
+    if mesh.space == "axisymmetric":
+        volume = volume * 2 * np.pi * np.einsum("qm,em->eq", table.shape, x[:, :, 0])
+    return volume

@@ -1,0 +1,155 @@
+"""Load stepping: increments that grow where they are easy, are cut where they fail, and always leave a state behind.
+
+Where increments fail although they were cut (a wall or web buckles locally), a viscous term is added to the potential,
+    c / 2 int |u - u_n|^2 dV,
+with u_n the last converged displacement: the step of a gradient flow, so that the body slides to its next stable
+state. c is given up again as soon as increments succeed; what the term dissipates is recorded in every state.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumorph.errors import NotConvergedError
+from pneumorph.mechanics.model import Model
+from pneumorph.mechanics.newton import Anchor, Converged, IncrementFailedError, Newton, Settings, Trial
+from pneumorph.mechanics.programme import Programme
+from pneumorph.mechanics.state import Energies, State, rest
+
+Array = NDArray[np.float64]
+_log = logging.getLogger(__name__)
+
+
+def march(
+    model: Model, programme: Programme, settings: Settings | None = None, start: Sequence[State] = ()
+) -> Iterator[State]:
+    """Yield the states of a programme as they converge; raises NotConvergedError where it cannot go on.
+
+    start: the last states of an earlier run to go on from (three give the same predictor as without the break);
+    without them the first state that comes is the one at rest.
+    """
+    programme.check(model)
+    settings = settings or Settings()
+    newton = Newton(model, settings)
+    past = list(start[-3:])
+    if not past:
+        past = [replace(rest(model), next_increment=programme.phases[0].first)]
+        yield past[0]
+    scale = max(m.shear_modulus for m in model.materials.values()) / model.mesh.size**2
+    while past[-1].time < len(programme.phases):
+        last = past[-1]
+        number = int(last.time)
+        phase = programme.phases[number]
+        done = last.time - number
+        planned = last.next_increment if done > 0.0 else phase.first
+        cuts = 0
+        while True:
+            ends = [mark for mark in (*sorted(phase.marks), 1.0) if mark > done + 1e-12]
+            increment = min(planned, ends[0] - done)
+            if ends[0] - done - increment < 0.02 * planned:  # no sliver of an increment before a mark
+                increment = ends[0] - done
+            fraction = ends[0] if increment == ends[0] - done else done + increment
+            time = number + fraction
+            lost = 0.0
+            try:
+                if cuts < 2:
+                    found = newton.solve(_predict(past, time), programme.values(time), Anchor(0.0, last.displacement))
+                else:
+                    found, lost = _relax(newton, last, programme.values(time), scale)
+            except IncrementFailedError as failure:
+                reason = str(failure)
+            else:
+                break
+            cuts += 1
+            planned = settings.cut * increment
+            _log.info("phase %s at %.4f: %s; increment cut to %.2g", phase.name, fraction, reason, planned)
+            if planned < phase.smallest:
+                raise NotConvergedError(
+                    f"stopped in phase '{phase.name}' at {done:.4f} of it, state {last.index}: {reason} "
+                    f"with the smallest increment {phase.smallest:g}"
+                )
+        if found.iterations <= settings.few:
+            if increment >= 0.999 * planned:
+                planned = min(settings.growth * increment, phase.largest)
+        state = _state(last, phase.name, time, found, programme.values(time), lost, planned, 0.0, newton)
+        past = [*past[-2:], state]
+        yield state
+
+
+def _relax(newton: Newton, last: State, values: dict[str, float], scale: float) -> tuple[Converged, float]:
+    """Return the equilibrium that viscous sliding from the last state leads to, and the energy lost on the way, mJ."""
+    trial = Trial(last.displacement, last.pressure_modes, np.array([last.pressure[n] for n in last.pressure]))
+    coefficient, lost, count = newton.settings.viscosity * scale, 0.0, 0
+    for _ in range(newton.settings.relaxations):
+        try:
+            found = newton.solve(trial, values, Anchor(coefficient, trial.displacement), 1e-3)
+        except IncrementFailedError as failure:
+            _log.info("relax c %.2e failed: %s", coefficient/scale, failure)
+            coefficient *= 10.0
+            continue
+        moved = (found.trial.displacement - trial.displacement).ravel()
+        lost += coefficient * float(newton.mass @ moved**2)
+        count += found.iterations
+        _log.info("relax c %.2e its %d moved %.3g unstable %s", coefficient/scale, found.iterations, np.abs(moved).max(), found.unstable_modes)
+        trial = found.trial
+        coefficient *= 0.2 if found.iterations <= 5 else 0.5
+        if coefficient < 1e-3*scale or np.abs(moved).max() < 1e-4 * newton.model.mesh.size:
+            try: 
+                found = newton.solve(trial, values, Anchor(0.0, trial.displacement))
+                return replace(found, iterations=count + found.iterations), lost
+            except IncrementFailedError: pass
+    raise IncrementFailedError("viscous sliding found no equilibrium")
+
+
+def _predict(past: Sequence[State], time: float) -> Trial:
+    """Return the unknowns extrapolated through the last states of the same phase (linear, or quadratic from three)."""
+    last = past[-1]
+    same = [s for s in past if s.time >= int(last.time)]
+    weights = _lagrange([s.time for s in same], time)
+    displacement = sum((w * s.displacement for w, s in zip(weights, same, strict=True)), np.zeros_like(last.displacement))
+    modes = [
+        sum((w * s.pressure_modes[i] for w, s in zip(weights, same, strict=True)), np.zeros_like(q))
+        for i, q in enumerate(last.pressure_modes)
+    ]
+    pressure = np.array([sum(w * s.pressure[n] for w, s in zip(weights, same, strict=True)) for n in last.pressure])
+    if len(same) > 1 and last.model.body.smallest_volume_ratio(last.model.mesh.points + displacement, False) <= 0.2:
+        return _predict([last], time)
+    return Trial(displacement, modes, pressure)
+
+
+def _lagrange(times: Sequence[float], time: float) -> list[float]:
+    """Return the weights of the polynomial through some times, at another time."""
+    return [
+        float(np.prod([(time - other) / (one - other) for other in times if other != one])) for one in times
+    ]
+
+
+def _state(
+    last: State, phase: str, time: float, found: Converged, values: dict[str, float], lost: float,
+    planned: float, viscosity: float, newton: Newton,
+) -> State:  # fmt: skip
+    """Return the new state, its energies integrated from the last by the trapezoidal rule."""
+    model, trial = last.model, found.trial
+    names = list(model.surfaces)
+    pressure = dict(zip(names, map(float, trial.pressure), strict=True))
+    volume = dict(zip(names, map(float, found.volume), strict=True))
+    supply = sum(0.5 * (pressure[n] + last.pressure[n]) * (volume[n] - last.volume[n]) for n in names)
+    moved = (trial.displacement - last.displacement).ravel()
+    load = sum(
+        0.5 * (values.get(name, 0.0) + last.values.get(name, 0.0)) * float(pattern @ moved)
+        for name, pattern in model.load_patterns.items()
+    )
+    held = model.held
+    load += 0.5 * float((found.reactions + last.reactions)[held] @ moved[held])
+    _, strain = model.body.energies(model.mesh.points + trial.displacement, trial.modes)
+    old = last.energies
+    energies = Energies(strain, old.supply + supply, old.load + load, old.viscous + lost)
+    return State(
+        model, last.index + 1, phase, time, trial.displacement, trial.modes, pressure, volume, values, found.reactions,
+        energies, found.iterations, found.unstable_modes, found.smallest_volume_ratio, planned, viscosity,
+    )  # fmt: skip

@@ -1,0 +1,115 @@
+"""Dead loads: gravity, traction and force on a face, each scaled by what the programme sets under its name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumorph.errors import InputError
+from pneumorph.materials import Material
+from pneumorph.mechanics.body import cell_volumes
+from pneumorph.mechanics.tables import cell_table, face_table
+from pneumorph.mesh.mesh import Mesh
+
+Array = NDArray[np.float64]
+
+
+def _unit(direction: tuple[float, ...], mesh: Mesh, owner: str) -> Array:
+    """Return a direction of length 1 that fits the mesh."""
+    vector = np.asarray(direction, dtype=float)
+    if vector.shape != (mesh.dimension,) or not np.isfinite(vector).all() or not vector.any():
+        raise InputError(f"{owner}: direction = {direction!r}, expected {mesh.dimension} numbers, not all zero")
+    return vector / np.linalg.norm(vector)
+
+
+@dataclass(frozen=True)
+class Gravity:
+    """Weight of all cells; the programme sets the acceleration (mm/s2) along `direction`. Needs densities."""
+
+    direction: tuple[float, ...]
+    name: str = "gravity"
+    kind: ClassVar[str] = "acceleration"
+
+    def pattern(self, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
+        """Return nodal forces (nodes * d,) for an acceleration of 1 mm/s2."""
+        direction = _unit(self.direction, mesh, f"gravity '{self.name}'")
+        mass = lumped_mass(mesh, {name: _density(material, name) for name, material in materials.items()}, False)
+        return np.outer(mass, direction).ravel()
+
+
+@dataclass(frozen=True)
+class Traction:
+    """Force per reference area on a face along `direction`; the programme sets it in MPa. It does not follow."""
+
+    face: str
+    direction: tuple[float, ...]
+    name: str
+    kind: ClassVar[str] = "stress"
+
+    def pattern(self, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
+        """Return nodal forces (nodes * d,) for a traction of 1 MPa."""
+        return np.outer(_areas(mesh, self.face), _unit(self.direction, mesh, f"traction '{self.name}'")).ravel()
+
+
+@dataclass(frozen=True)
+class Force:
+    """A force spread evenly over the reference area of a face; the programme sets its size in N."""
+
+    face: str
+    direction: tuple[float, ...]
+    name: str
+    kind: ClassVar[str] = "force"
+
+    def pattern(self, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
+        """Return nodal forces (nodes * d,) for a force of 1 N."""
+        areas = _areas(mesh, self.face)
+        return np.outer(areas / areas.sum(), _unit(self.direction, mesh, f"force '{self.name}'")).ravel()
+
+
+Load = Gravity | Traction | Force
+
+
+def _density(material: Material, domain: str) -> float:
+    if material.density is None:
+        raise InputError(f"gravity needs a density for the material of '{domain}', which has none")
+    return material.density
+
+
+def lumped_mass(mesh: Mesh, density: Mapping[str, float], positive: bool = True) -> Array:
+    """Return mass by node (nodes,), tonne, for densities by domain.
+
+    `positive` spreads each cell's mass in the ratio of the squared shape functions (Hinton, Rock and Zienkiewicz 1976):
+    corner nodes of quadratic cells would otherwise get a share of zero or less. Without it the sum is the work-equivalent one.
+    """
+    mass = np.zeros(len(mesh.points))
+    for block in mesh.blocks:
+        table = cell_table(block.kind)
+        weights = density[block.domain] * cell_volumes(mesh, block)
+        if positive:
+            share = np.einsum("eq,qm->em", weights, table.shape**2)
+            share *= (weights.sum(axis=1) / share.sum(axis=1))[:, None]
+        else:
+            share = np.einsum("eq,qm->em", weights, table.shape)
+        np.add.at(mass, block.nodes, share)
+    return mass
+
+
+def _areas(mesh: Mesh, face: str) -> Array:
+    """Return the reference area that each node bears of a face (nodes,), mm2."""
+    areas = np.zeros(len(mesh.points))
+    for block in mesh.face_blocks(face):
+        shape, gradient, weight = face_table(block.kind)
+        x = mesh.points[block.nodes]
+        tangent = np.einsum("qmj,emi->eqij", gradient, x)
+        if mesh.dimension == 3:
+            size = np.linalg.norm(np.cross(tangent[..., 0], tangent[..., 1]), axis=-1)
+        else:
+            size = np.linalg.norm(tangent[..., 0], axis=-1)
+            if mesh.space == "axisymmetric":
+                size = size * 2 * np.pi * np.einsum("qm,em->eq", shape, x[:, :, 0])
+        np.add.at(areas, block.nodes, np.einsum("eq,q,qm->em", size, weight, shape))
+    return areas

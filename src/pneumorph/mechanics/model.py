@@ -1,0 +1,147 @@
+"""The model: a mesh with materials, supports, loads and cavities, checked when it is made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumorph.errors import InputError, MeshError, NameNotFoundError, unknown_name
+from pneumorph.materials import Material
+from pneumorph.mechanics.body import Body, cell_volumes
+from pneumorph.mechanics.cavity import Cavity, CavitySurface
+from pneumorph.mechanics.loads import Load, lumped_mass
+from pneumorph.mechanics.supports import Prescribed, Support
+from pneumorph.mesh.mesh import Mesh
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """What is solved.
+
+    mesh:      cells and named faces.
+    materials: domain -> material, one for each domain of the mesh.
+    supports:  clamps, rollers, symmetry planes and prescribed displacements; together they must hold the body.
+    loads:     gravity, tractions and forces.
+    cavities:  the spaces that are inflated.
+    pressure:  'linear' or 'constant' pressure modes in each cell (see `mechanics.kernels`).
+
+    Raises InputError for a domain without material or unknown, names given twice, a body that is free to move;
+    MeshError for cells turned inside out or nodes without a cell; LeakingCavityError for an open cavity.
+    """
+
+    mesh: Mesh
+    materials: Mapping[str, Material]
+    supports: tuple[Support, ...] = ()
+    loads: tuple[Load, ...] = ()
+    cavities: tuple[Cavity, ...] = ()
+    pressure: str = field(default="linear", kw_only=True)
+
+    def __post_init__(self) -> None:
+        if self.pressure not in ("linear", "constant"):
+            raise InputError(f"pressure = {self.pressure!r}, allowed: linear, constant")
+        for domain in self.materials:
+            if domain not in self.mesh.domains:
+                raise NameNotFoundError(unknown_name("domain", domain, self.mesh.domains))
+        for domain in self.mesh.domains:
+            if domain not in self.materials:
+                raise InputError(f"no material for the domain '{domain}' of the mesh")
+        names = [item.name for item in (*self.loads, *self.cavities, *self._moved)]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(f"the name '{name}' is given to {names.count(name)} loads, cavities or displacements")
+        self._check_mesh()
+        self._check_held()
+        for load in self.loads:
+            load.pattern(self.mesh, self.materials)
+        _ = self.surfaces
+
+    @property
+    def _moved(self) -> tuple[Prescribed, ...]:
+        return tuple(support for support in self.supports if isinstance(support, Prescribed))
+
+    @cached_property
+    def kinds(self) -> dict[str, str]:
+        """Name -> unit kind of everything that a programme can drive."""
+        kinds = {cavity.name: cavity.supply.kind for cavity in self.cavities}
+        return kinds | {item.name: item.kind for item in (*self.loads, *self._moved)}
+
+    @cached_property
+    def body(self) -> Body:
+        """Elements and sparsity pattern."""
+        return Body(self.mesh, dict(self.materials), self.pressure)
+
+    @cached_property
+    def surfaces(self) -> dict[str, CavitySurface]:
+        """Name -> surface of each cavity."""
+        return {c.name: CavitySurface(c, self.mesh, self.body.pattern) for c in self.cavities}
+
+    @cached_property
+    def held(self) -> NDArray[np.int64]:
+        """Unknowns with a given displacement, sorted, each once."""
+        sets = [s.driven(self.mesh) if isinstance(s, Prescribed) else s.held(self.mesh) for s in self.supports]
+        return np.unique(np.concatenate(sets)) if sets else np.empty(0, dtype=np.int64)
+
+    def prescribed(self, values: Mapping[str, float]) -> Array:
+        """Return the displacement (nodes * d,) that supports give: zero, or what `values` (mm) say by name."""
+        result = np.zeros(self.mesh.points.size)
+        for support in self._moved:
+            result[support.driven(self.mesh)] = values.get(support.name, 0.0)
+        for support in self.supports:
+            if not isinstance(support, Prescribed):
+                result[support.held(self.mesh)] = 0.0
+        return result
+
+    @cached_property
+    def load_patterns(self) -> dict[str, Array]:
+        """Name -> nodal forces (nodes * d,) of each load at the value 1."""
+        return {load.name: load.pattern(self.mesh, self.materials) for load in self.loads}
+
+    @cached_property
+    def unit_mass(self) -> Array:
+        """Lumped volume (nodes,), mm3: the weights of viscous regularisation."""
+        return lumped_mass(self.mesh, dict.fromkeys(self.mesh.domains, 1.0))
+
+    def _check_mesh(self) -> None:
+        used = np.zeros(len(self.mesh.points), dtype=bool)
+        for block in self.mesh.blocks:
+            used[block.nodes] = True
+            volumes = cell_volumes(self.mesh, block)
+            if volumes.min() <= 0.0:
+                cell = int(np.argmin(volumes.min(axis=1)))
+                where = ", ".join(f"{x:.4g}" for x in self.mesh.points[block.nodes[cell]].mean(axis=0))
+                raise MeshError(f"{block.kind} {cell} of '{block.domain}' at ({where}) mm is turned inside out")
+        if not used.all():
+            raise MeshError(f"{int((~used).sum())} nodes belong to no cell")
+
+    def _check_held(self) -> None:
+        """Every rigid motion must move a held unknown."""
+        modes, names = _rigid_modes(self.mesh)
+        held = modes[self.held]
+        _, values, axes = np.linalg.svd(held, full_matrices=True) if len(held) else (None, np.zeros(0), np.eye(len(names)))
+        rank = int(np.sum(values > 1e-9 * max(1.0, values.max(initial=0.0))))
+        if rank < len(names):
+            free = names[int(np.argmax(np.abs(axes[rank])))]
+            raise InputError(f"the supports do not hold the body: it is free in {free}")
+
+
+def _rigid_modes(mesh: Mesh) -> tuple[Array, tuple[str, ...]]:
+    """Return the rigid motions (nodes * d, modes), about the centre and of like size, and their names."""
+    x = (mesh.points - mesh.points.mean(axis=0)) / mesh.size
+    zero, one = np.zeros(len(x)), np.ones(len(x))
+    if mesh.space == "axisymmetric":
+        return np.column_stack([zero, one]).reshape(-1, 1), ("translation y (along the axis)",)
+    if mesh.dimension == 2:
+        columns = [(one, zero), (zero, one), (-x[:, 1], x[:, 0])]
+        return np.stack([np.column_stack(c).ravel() for c in columns], axis=1), (
+            "translation x", "translation y", "rotation about z",
+        )  # fmt: skip
+    columns3 = [(one, zero, zero), (zero, one, zero), (zero, zero, one)]
+    columns3 += [(zero, -x[:, 2], x[:, 1]), (x[:, 2], zero, -x[:, 0]), (-x[:, 1], x[:, 0], zero)]
+    names = tuple(f"{kind} {axis}" for kind in ("translation", "rotation about") for axis in "xyz")
+    return np.stack([np.column_stack(c).ravel() for c in columns3], axis=1), names

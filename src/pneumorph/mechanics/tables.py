@@ -1,0 +1,97 @@
+"""Shape functions, quadrature and pressure modes of the nodal elements, tabulated by basix in VTK's node order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import basix
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_CELLS = {
+    "tetra10": basix.CellType.tetrahedron,
+    "wedge18": basix.CellType.prism,
+    "triangle6": basix.CellType.triangle,
+    "quad9": basix.CellType.quadrilateral,
+    "line3": basix.CellType.interval,
+}
+
+# position of each VTK node in basix's order
+_FROM_BASIX = {
+    "tetra10": [0, 1, 2, 3, 9, 6, 8, 7, 5, 4],
+    "wedge18": [0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16],
+    "triangle6": [0, 1, 2, 5, 3, 4],
+    "quad9": [0, 1, 3, 2, 4, 6, 7, 5, 8],
+    "line3": [0, 1, 2],
+}
+
+
+@dataclass(frozen=True, eq=False)
+class CellTable:
+    """Tabulated element: q points, n nodes, d reference directions, k pressure modes.
+
+    shape (q, n), gradient (q, n, d) with respect to reference coordinates, weight (q,), modes (q, k);
+    check_shape and check_gradient: the same at the points of a finer rule and at the nodes,
+    where the sign of det F is tested before a state is accepted.
+    """
+
+    kind: str
+    shape: Array
+    gradient: Array
+    weight: Array
+    modes: Array
+    check_shape: Array
+    check_gradient: Array
+
+
+def reference_nodes(kind: str) -> Array:
+    """Return the reference coordinates (n, d) of the nodes in VTK's order."""
+    points: Array = _element(kind).points[_FROM_BASIX[kind]]
+    return points
+
+
+def tabulate(kind: str, points: Array) -> tuple[Array, Array]:
+    """Return shape functions (q, n) and their reference gradients (q, n, d) at reference points (q, d)."""
+    order = _FROM_BASIX[kind]
+    table = _element(kind).tabulate(1, points)[:, :, :, 0][:, :, order]
+    return np.ascontiguousarray(table[0]), np.ascontiguousarray(np.moveaxis(table[1:], 0, -1))
+
+
+@cache
+def cell_table(kind: str, pressure: str = "linear") -> CellTable:
+    """Return the table of a cell; `pressure` modes are 'linear' and discontinuous, or 'constant' in each cell."""
+    points, weight = _rule(kind)
+    shape, gradient = tabulate(kind, points)
+    centred = points - points.mean(axis=0)
+    ones = np.ones((len(points), 1))
+    modes = np.hstack([ones, centred]) if pressure == "linear" else ones
+    finer, _ = basix.make_quadrature(_CELLS[kind], 4)
+    check_shape, check_gradient = tabulate(kind, np.vstack([finer, reference_nodes(kind)]))
+    return CellTable(kind, shape, gradient, weight, modes, check_shape, check_gradient)
+
+
+@cache
+def face_table(kind: str) -> tuple[Array, Array, Array]:
+    """Return shape (q, n), gradient (q, n, d) and weight (q,) that integrate the volume under a face exactly."""
+    points, weight = basix.make_quadrature(_CELLS[kind], {"triangle6": 4, "quad9": 6, "line3": 6}[kind])
+    shape, gradient = tabulate(kind, points)
+    return shape, gradient, weight
+
+
+@cache
+def _element(kind: str) -> basix.finite_element.FiniteElement:
+    return basix.create_element(basix.ElementFamily.P, _CELLS[kind], 2, basix.LagrangeVariant.gll_warped)
+
+
+def _rule(kind: str) -> tuple[Array, Array]:
+    """Return the quadrature points and weights in which stiffness and stress live."""
+    if kind == "wedge18":  # 6 points in the triangle times 3 across: basix's own rule of that degree takes 27
+        plane, plane_weight = basix.make_quadrature(basix.CellType.triangle, 4)
+        line, line_weight = basix.make_quadrature(basix.CellType.interval, 4)
+        points = np.array([[*p, z[0]] for z in line for p in plane])
+        return points, np.array([a * b for b in line_weight for a in plane_weight])
+    points, weight = basix.make_quadrature(_CELLS[kind], 2)
+    return points, weight

@@ -1,0 +1,99 @@
+"""Actuator -> mesh of 10-node tetrahedra with named faces."""
+
+from __future__ import annotations
+
+import math
+from types import MappingProxyType
+
+import numpy as np
+
+from pneumorph.errors import MeshError
+from pneumorph.geometry import occ
+from pneumorph.geometry.actuator import Actuator
+from pneumorph.mesh.mesh import CellBlock, FaceBlock, Mesh
+from pneumorph.mesh.reference import straightened
+from pneumorph.mesh.topology import boundary, corner_keys
+
+
+def generate(
+    actuator: Actuator,
+    size: float | None = None,
+    *,
+    coarse: bool = False,
+    grading: float | None = None,
+    detail: float | None = None,
+    wall_size: float | None = None,
+) -> Mesh:
+    """Return the mesh of an actuator: 10-node tetrahedra, one block a material domain, curved where the solid is.
+
+    size: largest edge in mm (automatic: the actuator's `default_size`, 1.625 times it if coarse).
+    coarse: choose `size` and `detail` for the fewest cells that keep the shape.
+    grading: how fast the size may change, above 0 (slowly) to 1; automatic 0.8.
+    detail: how much short edges refine their surroundings, 1 for an element no larger than the edge; 1, coarse 0.2.
+    wall_size: largest edge in mm on the cavity faces, if smaller than `size`.
+
+    Raises MeshError for settings out of range or a solid that Netgen cannot mesh.
+    """
+    size = _positive("size", actuator.default_size * (1.625 if coarse else 1.0) if size is None else size)
+    grading = _positive("grading", 0.8 if grading is None else grading, 1.0)
+    detail = _positive("detail", (0.2 if coarse else 1.0) if detail is None else detail)
+    sizes = dict(actuator.face_sizes)
+    if wall_size is not None:
+        sizes |= dict.fromkeys(actuator.cavities, _positive("wall_size", wall_size))
+    raw = occ.mesh_solid(actuator.shape(), size=size, grading=grading, detail=detail, face_sizes=sizes)
+    return from_raw(raw, actuator)
+
+
+def from_raw(raw: occ.RawMesh, actuator: Actuator) -> Mesh:
+    """Return the checked mesh of an actuator from the arrays that Netgen delivers."""
+    points, cells = raw.points, _positive_cells(raw.points, raw.cells)
+    points = straightened(points, "tetra10", cells)
+    used, cells = np.unique(cells, return_inverse=True)
+    triangles = np.searchsorted(used, raw.triangles)
+    cells = cells.reshape(-1, 10)
+    blocks = tuple(
+        CellBlock("tetra10", name, np.ascontiguousarray(cells[raw.domain == i])) for i, name in enumerate(raw.domains)
+    )
+    (skin,) = boundary(blocks)
+    faces = _name_faces(skin, triangles, raw.face, raw.face_names)
+    if set(faces) != set(actuator.face_names):
+        raise MeshError(
+            f"{type(actuator).__name__}: the mesh has the faces {', '.join(sorted(faces))}, "
+            f"expected {', '.join(sorted(actuator.face_names))}"
+        )
+    return Mesh(
+        points[used], blocks, MappingProxyType(faces), bending_walls=MappingProxyType(dict(actuator.bending_walls))
+    )
+
+
+def _positive(name: str, value: float, largest: float = math.inf) -> float:
+    if not isinstance(value, int | float) or not 0.0 < value <= largest or not math.isfinite(value):
+        upper = f" and at most {largest:g}" if math.isfinite(largest) else ""
+        raise MeshError(f"mesh: {name} = {value!r}: expected a finite number greater than 0{upper}")
+    return float(value)
+
+
+def _positive_cells(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Return the cells with the second and third corner exchanged where the corners span a negative volume."""
+    a, b, c, d = (points[cells[:, i]] for i in range(4))
+    negative = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0.0
+    cells = cells.copy()
+    cells[negative] = cells[negative][:, [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]]
+    return cells
+
+
+def _name_faces(
+    skin: FaceBlock, triangles: np.ndarray, face: np.ndarray, names: tuple[str, ...]
+) -> dict[str, tuple[FaceBlock, ...]]:
+    """Return the boundary faces by name; Netgen's triangles give the names, the cells give the orientation."""
+    mine, theirs = corner_keys("triangle6", skin.nodes), corner_keys("triangle6", triangles)
+    order, other = np.lexsort(mine.T), np.lexsort(theirs.T)
+    if len(mine) != len(theirs) or not np.array_equal(mine[order], theirs[other]):
+        raise MeshError("the surface triangles of the solid are not the boundary of its tetrahedra")
+    label = np.empty(len(mine), dtype=np.int64)
+    label[order] = face[other]
+    return {
+        name: (FaceBlock("triangle6", np.ascontiguousarray(skin.nodes[label == i])),)
+        for i, name in enumerate(names)
+        if (label == i).any()
+    }

@@ -1,0 +1,100 @@
+"""Units at the edges: text such as "80 kPa" in and out; plain numbers in mm, N, MPa, s, tonne inside."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+import pint
+
+from pneumorph.errors import UnitError, unknown_name
+
+# kind of quantity -> (unit used inside, unit used when printed)
+KINDS: dict[str, tuple[str, str]] = {
+    "length": ("mm", "mm"),
+    "area": ("mm**2", "mm²"),
+    "volume": ("mm**3", "mL"),
+    "pressure": ("MPa", "kPa"),
+    "stress": ("MPa", "MPa"),
+    "force": ("N", "N"),
+    "moment": ("N*mm", "N·mm"),
+    "angle": ("rad", "deg"),
+    "curvature": ("1/mm", "1/mm"),
+    "density": ("tonne/mm**3", "kg/m³"),
+    "acceleration": ("mm/s**2", "m/s²"),
+    "energy": ("mJ", "mJ"),
+    "time": ("s", "s"),
+    "number": ("", ""),
+}
+
+
+@cache
+def _registry() -> pint.UnitRegistry:
+    return pint.UnitRegistry()
+
+
+@cache
+def _factor(kind: str) -> float:
+    """Return how many printed units make one inside unit."""
+    inside, printed = KINDS[kind]
+    return float(_registry().Quantity(1.0, inside or "dimensionless").to(_plain(printed) or "dimensionless").magnitude)
+
+
+def _plain(unit: str) -> str:
+    """Return a printed unit in the form that pint reads."""
+    return unit.replace("³", "**3").replace("²", "**2").replace("·", "*")
+
+
+def printed_unit(kind: str) -> str:
+    """Return the unit in which a kind of quantity is printed: 'kPa' for 'pressure'."""
+    return _kind(kind)[1]
+
+
+def _kind(kind: str) -> tuple[str, str]:
+    if kind not in KINDS:
+        raise UnitError(unknown_name("kind of quantity", kind, KINDS))
+    return KINDS[kind]
+
+
+def parse(text: str, kind: str, name: str = "value") -> float:
+    """Return a quantity in inside units from text with a unit.
+
+    `kind` is one of `KINDS`; `name` is the input that the message of a `UnitError` blames.
+
+    >>> parse("80 kPa", "pressure")
+    0.08
+    >>> parse("1130 kg/m3", "density")
+    1.13e-09
+    """
+    inside, printed = _kind(kind)
+    example = f"{kind} with its unit, such as '1 {printed}'" if printed else "a plain number"
+    if not isinstance(text, str):
+        raise UnitError(f"{name} = {text!r}: expected {example}")
+    try:
+        quantity = _registry().Quantity(re.sub(r"([A-Za-z])([23])\b", r"\1**\2", _plain(text.strip())))
+        value = float(quantity.to(inside or "dimensionless").magnitude)
+    except (pint.PintError, TypeError, ValueError, AttributeError, AssertionError, ArithmeticError) as error:
+        reason = f" ({error})" if isinstance(error, pint.PintError) else ""
+        raise UnitError(f"{name} = '{text}': expected {example}{reason}") from None
+    except Exception as error:  # pint's tokenizer raises its own parser errors on odd text
+        raise UnitError(f"{name} = '{text}': expected {example}") from error
+    if value != value or value in (float("inf"), float("-inf")):
+        raise UnitError(f"{name} = '{text}': expected a finite {kind}")
+    return float(f"{value:.15g}")
+
+
+def to_printed(value: float, kind: str) -> float:
+    """Return an inside value in the unit in which its kind is printed: 0.08 MPa -> 80.0 kPa."""
+    _kind(kind)
+    return value * _factor(kind)
+
+
+def show(value: float, kind: str, digits: int = 4) -> str:
+    """Return an inside value as text with its printed unit.
+
+    >>> show(0.08, "pressure")
+    '80 kPa'
+    """
+    unit = printed_unit(kind)
+    text = f"{to_printed(value, kind):.{digits}g}"
+    return f"{text} {unit}" if unit else text
