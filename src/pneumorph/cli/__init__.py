@@ -1,1 +1,1 @@
-
+"""The command line: one file for each subcommand, thin over the Python API."""

@@ -11,6 +11,7 @@ from pneumorph.materials import Material
 from pneumorph.mechanics import kernels
 from pneumorph.mechanics.pattern import Pattern
 from pneumorph.mechanics.tables import CellTable, cell_table
+from pneumorph.mechanics.volumetric import split_bulk
 from pneumorph.mesh.mesh import CellBlock, Mesh
 from pneumorph.threads import parallel, slices
 
@@ -19,12 +20,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """One thread's cells of one block; `slots` place their matrices in the pattern."""
+    """One thread's cells of one block.
+
+    slots: where their matrices go in the pattern; bulk: moduli of pressure modes and points, see `volumetric`.
+    """
 
     cells: NDArray[np.int64]
     slots: NDArray[np.int32]
     material: Material
     table: CellTable
+    bulk: tuple[float, float]
     sizes: tuple[tuple[int, ...], ...]
     block: int
     part: slice
@@ -50,7 +55,7 @@ class Body:
     The pressure state is a list with one array (cells, modes) for each block of the mesh.
     """
 
-    def __init__(self, mesh: Mesh, materials: dict[str, Material], pressure: str = "linear"):
+    def __init__(self, mesh: Mesh, materials: dict[str, Material], pressure: str = "constant"):
         self.mesh = mesh
         self.dimension = mesh.dimension
         self.pattern = Pattern.of_cells(len(mesh.points), self.dimension, (b.nodes for b in mesh.blocks))
@@ -68,7 +73,7 @@ class Body:
             )
             for thread, part in enumerate(slices(len(block.nodes))):
                 cells = np.ascontiguousarray(block.nodes[part], dtype=np.int64)
-                piece = Piece(cells, self.pattern.slots(cells), material, table, sizes, i, part)
+                piece = Piece(cells, self.pattern.slots(cells), material, table, split_bulk(material), sizes, i, part)
                 if thread == len(teams):
                     teams.append([])
                 teams[thread].append(piece)
@@ -94,7 +99,7 @@ class Body:
                 gain = np.zeros((count if tangent else 0, modes, self.dimension, nodes))
                 kernels.integrate(
                     piece.sizes, points, position, piece.cells, table.shape, table.gradient, table.weight, table.modes,
-                    piece.material.bulk_modulus, pressure[piece.block][piece.part],
+                    *piece.bulk, pressure[piece.block][piece.part],
                     stress.reshape(count, -1, 6), moduli.reshape(count, -1, 21), piece.slots, self.pattern.indptr,
                     result.force, result.values, constant, gain, tangent,
                 )  # fmt: skip
@@ -130,7 +135,7 @@ class Body:
                 density = piece.material.energy(c.reshape(-1, 6)).reshape(c.shape[:2])
                 isochoric, condensed, mixed = kernels.volumetric(
                     piece.sizes, self.mesh.points, position, piece.cells, table.shape, table.gradient, table.weight,
-                    table.modes, piece.material.bulk_modulus, pressure[piece.block][piece.part], density,
+                    table.modes, *piece.bulk, pressure[piece.block][piece.part], density,
                 )  # fmt: skip
                 total += isochoric + np.array([condensed, mixed])
             return total
@@ -139,7 +144,7 @@ class Body:
         return float(condensed), float(mixed)
 
     def smallest_volume_ratio(self, position: Array, fine: bool) -> float:
-        """Return the smallest det F at the quadrature points or, `fine`, at a finer rule's points and the nodes."""
+        """Return the smallest det F at the quadrature points or, `fine`, at those of a finer rule."""
 
         def work(team: list[Piece]) -> float:
             return min(self._deformation(piece, position, fine)[1] for piece in team)
@@ -152,9 +157,7 @@ class Body:
         gradient = table.check_gradient if fine else table.gradient
         c = np.empty((len(piece.cells), len(shape), 6))
         ratio = np.empty(c.shape[:2])
-        smallest = kernels.deformation(
-            piece.sizes, self.mesh.points, position, piece.cells, shape, gradient, c, ratio
-        )
+        smallest = kernels.deformation(piece.sizes, self.mesh.points, position, piece.cells, shape, gradient, c, ratio)
         return c, smallest
 
 

@@ -57,7 +57,7 @@ def march(
             time = number + fraction
             lost = 0.0
             try:
-                if cuts < 2:
+                if cuts < 2 or not settings.viscosity:
                     found = newton.solve(_predict(past, time), programme.values(time), Anchor(0.0, last.displacement))
                 else:
                     found, lost = _relax(newton, last, programme.values(time), scale)
@@ -73,9 +73,8 @@ def march(
                     f"stopped in phase '{phase.name}' at {done:.4f} of it, state {last.index}: {reason} "
                     f"with the smallest increment {phase.smallest:g}"
                 )
-        if found.iterations <= settings.few:
-            if increment >= 0.999 * planned:
-                planned = min(settings.growth * increment, phase.largest)
+        if found.iterations <= settings.few and increment >= 0.999 * planned:
+            planned = min(settings.growth * increment, phase.largest)
         state = _state(last, phase.name, time, found, programme.values(time), lost, planned, 0.0, newton)
         past = [*past[-2:], state]
         yield state
@@ -85,24 +84,27 @@ def _relax(newton: Newton, last: State, values: dict[str, float], scale: float) 
     """Return the equilibrium that viscous sliding from the last state leads to, and the energy lost on the way, mJ."""
     trial = Trial(last.displacement, last.pressure_modes, np.array([last.pressure[n] for n in last.pressure]))
     coefficient, lost, count = newton.settings.viscosity * scale, 0.0, 0
+    size = newton.model.mesh.size
     for _ in range(newton.settings.relaxations):
         try:
-            found = newton.solve(trial, values, Anchor(coefficient, trial.displacement), 1e-3)
+            found = newton.solve(trial, values, Anchor(coefficient, trial.displacement), loose=True)
         except IncrementFailedError as failure:
-            _log.info("relax c %.2e failed: %s", coefficient/scale, failure)
-            coefficient *= 10.0
+            _log.debug("viscosity %.3g: %s", coefficient / scale, failure)
+            coefficient *= 5.0
             continue
         moved = (found.trial.displacement - trial.displacement).ravel()
+        largest = float(np.abs(moved).max())
         lost += coefficient * float(newton.mass @ moved**2)
         count += found.iterations
-        _log.info("relax c %.2e its %d moved %.3g unstable %s", coefficient/scale, found.iterations, np.abs(moved).max(), found.unstable_modes)
         trial = found.trial
-        coefficient *= 0.2 if found.iterations <= 5 else 0.5
-        if coefficient < 1e-3*scale or np.abs(moved).max() < 1e-4 * newton.model.mesh.size:
-            try: 
+        _log.debug("viscosity %.3g: %d iterations, moved %.3g mm", coefficient / scale, found.iterations, largest)
+        coefficient *= 0.3
+        if largest < 1e-3 * size or coefficient < scale:
+            try:
                 found = newton.solve(trial, values, Anchor(0.0, trial.displacement))
-                return replace(found, iterations=count + found.iterations), lost
-            except IncrementFailedError: pass
+            except IncrementFailedError:
+                continue
+            return replace(found, iterations=count + found.iterations), lost
     raise IncrementFailedError("viscous sliding found no equilibrium")
 
 
@@ -111,7 +113,9 @@ def _predict(past: Sequence[State], time: float) -> Trial:
     last = past[-1]
     same = [s for s in past if s.time >= int(last.time)]
     weights = _lagrange([s.time for s in same], time)
-    displacement = sum((w * s.displacement for w, s in zip(weights, same, strict=True)), np.zeros_like(last.displacement))
+    displacement = sum(
+        (w * s.displacement for w, s in zip(weights, same, strict=True)), np.zeros_like(last.displacement)
+    )
     modes = [
         sum((w * s.pressure_modes[i] for w, s in zip(weights, same, strict=True)), np.zeros_like(q))
         for i, q in enumerate(last.pressure_modes)
@@ -124,9 +128,7 @@ def _predict(past: Sequence[State], time: float) -> Trial:
 
 def _lagrange(times: Sequence[float], time: float) -> list[float]:
     """Return the weights of the polynomial through some times, at another time."""
-    return [
-        float(np.prod([(time - other) / (one - other) for other in times if other != one])) for one in times
-    ]
+    return [float(np.prod([(time - other) / (one - other) for other in times if other != one])) for one in times]
 
 
 def _state(

@@ -1,12 +1,13 @@
 """The element kernels: one generic source over tabulated arrays, compiled once for each shape of element.
 
 Displacement u and, in each cell, a few pressure modes q make the two-field energy
-    integral of W(C) + q (J - 1) - q^2 / (2 K)
+    integral of W(C) + U(J) + q (J - 1) - q^2 / (2 K)
 (Sussman and Bathe 1987, with the pressure a Lagrange multiplier of J - 1). With modes L,
 M = int L L', b = int L (J - 1), B = int cof(F) grad N L, and q kept as a state that is updated linearly,
     r_q = b - M q / K,    residual = f(q) + K B M^-1 r_q,    tangent = K_uu + K B M^-1 B',
     q <- q + K M^-1 (r_q + B' du).
-Eliminating q exactly takes nearly twice the iterations (docs/decisions.md).
+Eliminating q exactly takes nearly twice the iterations (docs/decisions.md). U acts at every point and keeps the cell
+from turning inside out while its mean volume is held by q, see `volumetric`.
 
 Plane strain has F_33 = 1; axial symmetry F_33 = r / R and the volume factor 2 pi R.
 """
@@ -162,7 +163,7 @@ def add_matrices(sizes, cells, matrices, slots, indptr, data):  # type: ignore[n
 
 @njit(cache=True, nogil=True, fastmath=_FAST)
 def integrate(  # type: ignore[no-untyped-def]
-    sizes, points, position, cells, shape, gradient, weight, mode, bulk, pressure, s, cc,
+    sizes, points, position, cells, shape, gradient, weight, mode, bulk, local, pressure, s, cc,
     slots, indptr, residual, data, gain_constant, gain, tangent,
 ):  # fmt: skip
     """Add the residual and, with `tangent`, the stiffness of all cells.
@@ -194,12 +195,14 @@ def integrate(  # type: ignore[no-untyped-def]
             multiplier = 0.0
             for m in range(k):
                 multiplier += mode[q, m] * pressure[e, m]
+            total = multiplier + 0.5 * local * (det - 1.0 / det)
+            second = 0.5 * local * (1.0 + 1.0 / (det * det))
             for i in range(3):
                 for j in range(3):
                     cof[i, j] = det * inverse[j, i]
             for i in range(3):
                 for j in range(3):
-                    value = multiplier * cof[i, j]
+                    value = total * cof[i, j]
                     for m in range(3):
                         value += f[i, m] * s[e, q, _VOIGT[m, j]]
                     p[i, j] = value
@@ -225,7 +228,7 @@ def integrate(  # type: ignore[no-untyped-def]
                         right[r, m] += value * h[m]
             if not tangent:
                 continue
-            # dP_iJ / dF_kL = F_iI CC_IJKL F_kK + delta_ik S_JL + q d2J / dF_iJ dF_kL
+            # dP_iJ / dF_kL = F_iI CC_IJKL F_kK + delta_ik S_JL + (q + U') d2J / dF_iJ dF_kL + U'' cof_iJ cof_kL
             for i in range(3):
                 for j in range(3):
                     if (i >= d or j >= d) and not (len(sizes[3]) and i == 2 and j == 2):
@@ -237,7 +240,8 @@ def integrate(  # type: ignore[no-untyped-def]
                         half[v] = value
                     for r in range(3):
                         for l in range(3):
-                            value = multiplier * det * (inverse[j, i] * inverse[l, r] - inverse[l, i] * inverse[j, r])
+                            value = (total + second * det) * det * inverse[j, i] * inverse[l, r]
+                            value -= total * det * inverse[l, i] * inverse[j, r]
                             for m in range(3):
                                 value += f[r, m] * half[_VOIGT[m, l]]
                             if i == r:
@@ -296,8 +300,8 @@ def integrate(  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def volumetric(sizes, points, position, cells, shape, gradient, weight, mode, bulk, pressure, density):  # type: ignore[no-untyped-def]
-    """Return (int of density, condensed K/2 b' M^-1 b, mixed int of q (J - 1) - q^2 / (2 K)).
+def volumetric(sizes, points, position, cells, shape, gradient, weight, mode, bulk, local, pressure, density):  # type: ignore[no-untyped-def]
+    """Return (int of W + U, condensed K/2 b' M^-1 b, mixed int of q (J - 1) - q^2 / (2 K)).
 
     density (cells, q): the isochoric energy at the quadrature points.
     """
@@ -305,14 +309,14 @@ def volumetric(sizes, points, position, cells, shape, gradient, weight, mode, bu
     g, h = np.empty((d, n)), np.empty(n)
     a, inverse, f = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     mass, right = np.empty((k, k)), np.empty((k, 1))
-    isochoric, condensed, mixed = 0.0, 0.0, 0.0
+    pointwise, condensed, mixed = 0.0, 0.0, 0.0
     for e in range(len(cells)):
         mass[:] = 0.0
         right[:] = 0.0
         for q in range(len(shape)):
             w = weight[q] * _kinematics(sizes, cells[e], points, position, shape, gradient, q, g, h, a, inverse, f)
             det = _invert(f, inverse)
-            isochoric += w * density[e, q]
+            pointwise += w * (density[e, q] + 0.25 * local * (det * det - 1.0 - 2.0 * np.log(det)))
             multiplier = 0.0
             for r in range(k):
                 multiplier += mode[q, r] * pressure[e, r]
@@ -323,4 +327,4 @@ def volumetric(sizes, points, position, cells, shape, gradient, weight, mode, bu
         _solve_modes(mass, right)
         for r in range(k):
             condensed += 0.5 * bulk * right[r, 0] ** 2
-    return isochoric, condensed, mixed
+    return pointwise, condensed, mixed

@@ -83,7 +83,7 @@ def lumped_mass(mesh: Mesh, density: Mapping[str, float], positive: bool = True)
     """Return mass by node (nodes,), tonne, for densities by domain.
 
     `positive` spreads each cell's mass in the ratio of the squared shape functions (Hinton, Rock and Zienkiewicz 1976):
-    corner nodes of quadratic cells would otherwise get a share of zero or less. Without it the sum is the work-equivalent one.
+    corner nodes of quadratic cells would otherwise get a share of zero or less. Without it, shares are work-equivalent.
     """
     mass = np.zeros(len(mesh.points))
     for block in mesh.blocks:

@@ -29,7 +29,7 @@ class Model:
     supports:  clamps, rollers, symmetry planes and prescribed displacements; together they must hold the body.
     loads:     gravity, tractions and forces.
     cavities:  the spaces that are inflated.
-    pressure:  'linear' or 'constant' pressure modes in each cell (see `mechanics.kernels`).
+    pressure:  'constant' or 'linear' pressure modes in each cell (see `mechanics.volumetric`).
 
     Raises InputError for a domain without material or unknown, names given twice, a body that is free to move;
     MeshError for cells turned inside out or nodes without a cell; LeakingCavityError for an open cavity.
@@ -40,7 +40,7 @@ class Model:
     supports: tuple[Support, ...] = ()
     loads: tuple[Load, ...] = ()
     cavities: tuple[Cavity, ...] = ()
-    pressure: str = field(default="linear", kw_only=True)
+    pressure: str = field(default="constant", kw_only=True)
 
     def __post_init__(self) -> None:
         if self.pressure not in ("linear", "constant"):
@@ -123,7 +123,9 @@ class Model:
         """Every rigid motion must move a held unknown."""
         modes, names = _rigid_modes(self.mesh)
         held = modes[self.held]
-        _, values, axes = np.linalg.svd(held, full_matrices=True) if len(held) else (None, np.zeros(0), np.eye(len(names)))
+        _, values, axes = (
+            np.linalg.svd(held, full_matrices=True) if len(held) else (None, np.zeros(0), np.eye(len(names)))
+        )
         rank = int(np.sum(values > 1e-9 * max(1.0, values.max(initial=0.0))))
         if rank < len(names):
             free = names[int(np.argmax(np.abs(axes[rank])))]

@@ -15,7 +15,9 @@ class Supply(Protocol):
     kind: ClassVar[str]
     sets_pressure: ClassVar[bool]
 
-    def equation(self, pressure: float, volume: float, start_volume: float, target: float) -> tuple[float, float, float]:
+    def equation(
+        self, pressure: float, volume: float, start_volume: float, target: float
+    ) -> tuple[float, float, float]:
         """Return (g, dg/dp, dg/dV) at a gauge pressure (MPa) and a volume (mm3)."""
 
 
@@ -26,7 +28,9 @@ class PressureSupply:
     kind: ClassVar[str] = "pressure"
     sets_pressure: ClassVar[bool] = True
 
-    def equation(self, pressure: float, volume: float, start_volume: float, target: float) -> tuple[float, float, float]:
+    def equation(
+        self, pressure: float, volume: float, start_volume: float, target: float
+    ) -> tuple[float, float, float]:
         """Return p - target and its derivatives."""
         return pressure - target, 1.0, 0.0
 
@@ -38,6 +42,8 @@ class VolumeSupply:
     kind: ClassVar[str] = "volume"
     sets_pressure: ClassVar[bool] = False
 
-    def equation(self, pressure: float, volume: float, start_volume: float, target: float) -> tuple[float, float, float]:
+    def equation(
+        self, pressure: float, volume: float, start_volume: float, target: float
+    ) -> tuple[float, float, float]:
         """Return V - V0 - target and its derivatives."""
         return volume - start_volume - target, 0.0, 1.0

@@ -1,0 +1,51 @@
+"""What `run` and `reproduce` share: solve with progress, then report; the exit code says how it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import typer
+
+from pneumorph.cli.output import complain, console
+from pneumorph.cli.progress import progress_on
+from pneumorph.solution import Solution, Status
+from pneumorph.studies import Study, run_study
+
+STOPPED, INTERRUPTED = 3, 130
+
+
+def solve_and_report(
+    study: Study,
+    folder: Path,
+    resume: bool,
+    command: str,
+    report: Callable[[Solution], Path] | None,
+    about: dict[str, str] | None = None,
+) -> None:
+    """Solve a study into a folder and write its report; `command` resumes it.
+
+    Raises typer.Exit with 3 where the solve stopped before its target, 130 where it was interrupted.
+    """
+    out = console()
+    out.print(f"{study.title}\nfolder: {folder}", markup=False)
+    try:
+        with progress_on(out, study.measures) as progress:
+            solution = run_study(
+                study,
+                folder,
+                resume=resume,
+                progress=progress,
+                about={**(about or {}), "command": command},
+                raise_on_stop=False,
+            )
+    except KeyboardInterrupt:
+        complain(f"interrupted; the states so far are kept, go on with: {command} --resume")
+        raise typer.Exit(INTERRUPTED) from None
+    if report is not None:
+        out.print("writing the report ...")
+        out.print(f"report: {report(solution)}", markup=False)
+    if solution.status is Status.STOPPED:
+        complain(f"stopped before the target: {solution.message}\n{len(solution.states)} states are kept in {folder}")
+        raise typer.Exit(STOPPED)
+    out.print(f"done: {len(solution.states)} states, {solution.meta['iterations']} Newton iterations", markup=False)

@@ -1,0 +1,42 @@
+"""Which curves a run gets when nobody says."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pneumorph.report.figures import Curve
+from pneumorph.solution import Solution
+
+_BESIDE = {"strain_energy", "supply_work", "load_work", "viscous_loss", "energy_error", "iterations"}
+_BESIDE |= {"unstable_modes", "smallest_volume_ratio", "index", "phase", "time"}
+
+
+def driver(solution: Solution) -> str:
+    """Return the column to draw curves over: the largest pressure, else the first driven value, else the time."""
+    history = solution.history
+    pressures = [key for key in history.keys if key.startswith("pressure:") and np.any(history.values(key))]
+    if pressures:
+        return max(pressures, key=lambda key: float(np.abs(history.values(key)).max()))
+    values = [key for key in history.keys if key.startswith("value:") and np.any(history.values(key))]
+    return values[0] if values else "time"
+
+
+def default_curves(solution: Solution) -> list[Curve]:
+    """Return measures over the pressure (angles together, others alone) and the pressure over the added volume."""
+    history, over = solution.history, driver(solution)
+    beside = ("pressure:", "volume:", "added_volume:", "value:")
+    measures = [c for c in history.columns if c.key not in _BESIDE and not c.key.startswith(beside)]
+    result = []
+    angles = tuple(c.key for c in measures if c.kind == "angle")
+    if angles:
+        result.append(
+            Curve("Bending" if len(angles) > 1 else history.column(angles[0]).label.capitalize(), over, angles)
+        )
+    for column in measures:
+        values = history.values(column.key)
+        if column.kind != "angle" and np.isfinite(values).any() and np.ptp(values[np.isfinite(values)]) > 0.0:
+            result.append(Curve(column.label.capitalize(), over, (column.key,)))
+    if over.startswith("pressure:"):
+        cavity = over.removeprefix("pressure:")
+        result.append(Curve("Pressure and volume", f"added_volume:{cavity}", (over,)))
+    return result

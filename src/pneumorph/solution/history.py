@@ -1,0 +1,172 @@
+"""The history of a run: one row of numbers for each state, with labels and units; written as CSV."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumorph.errors import InputError, NameNotFoundError, StorageError, unknown_name
+from pneumorph.mechanics import Model, State
+from pneumorph.solution.files import write_atomically
+from pneumorph.units import printed_unit, to_printed
+
+TEXT = "text"
+
+
+class Measure(Protocol):
+    """A number taken from a state: a name, the kind of its unit and a call."""
+
+    @property
+    def name(self) -> str:
+        """Key of its column."""
+
+    @property
+    def kind(self) -> str:
+        """Kind of quantity, see `pneumorph.units.KINDS`."""
+
+    def __call__(self, state: State) -> float:
+        """Return the value in inside units."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """key: how programs call it; label: how people do; kind: unit kind of the values, or 'text'."""
+
+    key: str
+    label: str
+    kind: str
+
+    @property
+    def header(self) -> str:
+        """Key with the printed unit, as in the first line of the CSV file: 'pressure:cavity_1 [kPa]'."""
+        unit = "" if self.kind == TEXT else printed_unit(self.kind)
+        return f"{self.key} [{unit}]" if unit else self.key
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """Rows of a run. columns: in order; rows: key -> value in inside units, nan where it is not known."""
+
+    columns: list[Column]
+    rows: list[dict[str, Any]]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def keys(self) -> list[str]:
+        """Keys of the columns."""
+        return [column.key for column in self.columns]
+
+    def column(self, key: str) -> Column:
+        """Return a column; raises NameNotFoundError with the nearest key."""
+        for column in self.columns:
+            if column.key == key:
+                return column
+        raise NameNotFoundError(unknown_name("column", key, self.keys))
+
+    def values(self, key: str) -> NDArray[Any]:
+        """Return the values of a column (rows,) in inside units: float64, or str for text."""
+        kind = self.column(key).kind
+        return np.array([row[key] for row in self.rows], dtype=str if kind == TEXT else np.float64)
+
+    def write_csv(self, path: Path) -> None:
+        """Write the rows in printed units, with all their digits; the file is replaced in one go."""
+
+        def write(temporary: Path) -> None:
+            with temporary.open("w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow([column.header for column in self.columns])
+                for row in self.rows:
+                    writer.writerow([_text(row[column.key], column.kind) for column in self.columns])
+
+        write_atomically(path, write)
+
+
+def read_csv(path: Path) -> dict[str, list[str] | NDArray[np.float64]]:
+    """Return header -> values of a history file, in printed units as they stand there; text columns as lists.
+
+    Raises StorageError where the file is missing or its lines are not of one length.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            header, *lines = list(csv.reader(file))
+    except (OSError, ValueError) as error:
+        raise StorageError(f"{path} cannot be read: {error}") from error
+    if any(len(line) != len(header) for line in lines):
+        raise StorageError(f"{path}: expected {len(header)} values in every line")
+    result: dict[str, list[str] | NDArray[np.float64]] = {}
+    for name, column in zip(header, zip(*lines, strict=True) if lines else [()] * len(header), strict=True):
+        try:
+            result[name] = np.array([float(text) if text else math.nan for text in column])
+        except ValueError:
+            result[name] = list(column)
+    return result
+
+
+def _text(value: Any, kind: str) -> str:
+    if kind == TEXT:
+        return str(value)
+    number = to_printed(float(value), kind)
+    if math.isnan(number):
+        return ""
+    return str(int(number)) if kind == "number" and number.is_integer() else repr(number)
+
+
+def columns(model: Model, measures: Sequence[Measure]) -> list[Column]:
+    """Return the columns of a model's history; raises InputError for a measure whose name is taken."""
+    result = [Column("index", "state", "number"), Column("phase", "phase", TEXT), Column("time", "time", "number")]
+    for cavity in model.surfaces:
+        result += [
+            Column(f"pressure:{cavity}", f"gauge pressure in {cavity}", "pressure"),
+            Column(f"volume:{cavity}", f"volume of {cavity}", "volume"),
+            Column(f"added_volume:{cavity}", f"volume added to {cavity}", "volume"),
+        ]
+    result += [Column(f"value:{n}", n, kind) for n, kind in model.kinds.items() if n not in model.surfaces]
+    for measure in measures:
+        printed_unit(measure.kind)
+        result.append(Column(measure.name, measure.name.replace("_", " "), measure.kind))
+    result += [
+        Column("strain_energy", "strain energy", "energy"),
+        Column("supply_work", "work of the supplies", "energy"),
+        Column("load_work", "work of loads and moved supports", "energy"),
+        Column("viscous_loss", "energy lost in regularisation", "energy"),
+        Column("energy_error", "relative error of the energy balance", "number"),
+        Column("iterations", "Newton iterations", "number"),
+        Column("unstable_modes", "unstable modes", "number"),
+        Column("smallest_volume_ratio", "smallest det F", "number"),
+    ]
+    keys = [column.key for column in result]
+    for measure in measures:
+        if keys.count(measure.name) > 1:
+            raise InputError(f"measure '{measure.name}': the name is taken; give the measure another one")
+    return result
+
+
+def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
+    """Return the row of a state: key -> value in inside units."""
+    surfaces, energies = state.model.surfaces, state.energies
+    result: dict[str, Any] = {"index": state.index, "phase": state.phase, "time": state.time}
+    for cavity, surface in surfaces.items():
+        result[f"pressure:{cavity}"] = float(state.pressure[cavity])
+        result[f"volume:{cavity}"] = float(state.volume[cavity])
+        result[f"added_volume:{cavity}"] = float(state.volume[cavity] - surface.reference_volume)
+    result |= {f"value:{n}": float(state.values.get(n, 0.0)) for n in state.model.kinds if n not in surfaces}
+    result |= {measure.name: float(measure(state)) for measure in measures}
+    return result | {
+        "strain_energy": energies.strain,
+        "supply_work": energies.supply,
+        "load_work": energies.load,
+        "viscous_loss": energies.viscous,
+        "energy_error": energies.relative_error,
+        "iterations": state.iterations,
+        "unstable_modes": math.nan if state.unstable_modes is None else state.unstable_modes,
+        "smallest_volume_ratio": state.smallest_volume_ratio,
+    }

@@ -1,0 +1,136 @@
+"""What a study file may leave out: the same study with every default written into it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from pneumorph.errors import InputError, NameNotFoundError, StudyError, unknown_name
+from pneumorph.geometry import Actuator
+from pneumorph.studies.schema import (
+    ALL_DOMAINS,
+    TEMPLATES,
+    CavitySection,
+    ClampSection,
+    LibraryMaterial,
+    PhaseSection,
+    PrescribedSection,
+    RollerSection,
+    StudyFile,
+    SymmetrySection,
+)
+from pneumorph.studies.section import write
+
+GRAVITY = "gravity"
+
+# the silicones of the published actuators, by domain
+_MATERIALS = {
+    "finger": {"body": "lsr-finger"},
+    "hexagonal-prism": {"body": "shore-a45-platinum"},
+    "pneunet": {"body": "ecoflex-pneunet", "base": "pdms-pneunet"},
+}
+
+
+def actuator_of(file: StudyFile) -> Actuator:
+    """Return the actuator; raises GeometryError for dimensions that do not fit."""
+    dimensions = {name: getattr(file.actuator, name) for name in type(file.actuator).model_fields if name != "template"}
+    return TEMPLATES[file.actuator.template](**dimensions)
+
+
+def completed(file: StudyFile, actuator: Actuator) -> StudyFile:
+    """Return the study with every default filled in.
+
+    Materials: those of the published actuator. Supports: the face "clamp" held, symmetry in the cut faces of a part.
+    Cavities: all of the template, by pressure. Phases: named phase_1, ...; gravity, if any, in one before them.
+
+    Raises NameNotFoundError for a face or domain that the actuator does not have, InputError for a face that is
+    supported twice or bounds two cavities, StudyError for what is missing and has no default.
+    """
+    mirrors = tuple(name for name in actuator.face_names if name.startswith("symmetry_"))
+    support = file.support
+    if support is None:
+        clamp = [ClampSection(type="clamp", face="clamp")] if "clamp" in actuator.face_names else []
+        support = (*clamp, *(SymmetrySection(type="symmetry", face=name) for name in mirrors))
+    cavity = [
+        CavitySection(
+            name=item.name,
+            faces=(item.name,) if item.faces is None else item.faces,
+            supply=item.supply,
+            mirrors=mirrors if item.mirrors is None else item.mirrors,
+        )
+        for item in ([CavitySection(name=name) for name in actuator.cavities] if file.cavity is None else file.cavity)
+    ]
+    bounds = [(c.name, tuple(c.faces or ()), tuple(c.mirrors or ())) for c in cavity]
+    _check_faces(actuator, [(f"support[{i + 1}]", item.face) for i, item in enumerate(support)])
+    _check_faces(actuator, [(f"load[{i + 1}]", item.face) for i, item in enumerate(file.load)])
+    _check_faces(actuator, [(f"cavity '{name}'", face) for name, faces, planes in bounds for face in (*faces, *planes)])
+    _check_once(
+        [(face, f"cavity '{name}'") for name, faces, _ in bounds for face in faces],
+        "a face bounds one cavity, and once only",
+    )
+    _check_once(
+        [(f"{item.face}.{a}", f"support[{i + 1}]") for i, item in enumerate(support) for a in _axes(item)],
+        "each direction of a face is supported once",
+    )
+    return file.model_copy(
+        update={
+            "material": _materials(file, actuator),
+            "support": support,
+            "cavity": tuple(cavity),
+            "phase": _phases(file),
+        }
+    )
+
+
+def _materials(file: StudyFile, actuator: Actuator) -> dict[str, object]:
+    template = file.actuator.template
+    for domain in file.material:
+        if domain not in (*actuator.domains, ALL_DOMAINS):
+            raise NameNotFoundError("material: " + unknown_name("domain", domain, actuator.domains))
+    chosen = {}
+    for domain in actuator.domains:
+        section = file.material.get(domain, file.material.get(ALL_DOMAINS))
+        if section is None and domain in _MATERIALS.get(template, {}):
+            section = LibraryMaterial(name=_MATERIALS[template][domain])
+        if section is None:
+            raise StudyError(
+                f"material: missing for the domain '{domain}' of the template '{template}'; give [material] a name "
+                'from the library, such as name = "shore-a45-platinum", or a law with its constants'
+            )
+        chosen[domain] = section
+    return chosen
+
+
+def _phases(file: StudyFile) -> tuple[PhaseSection, ...]:
+    if not file.phase:
+        raise StudyError(
+            'phase: missing; say what is driven how far, such as [[phase]] with targets = { cavity = "50 kPa" }'
+        )
+    phases = [
+        phase if phase.name is not None else phase.model_copy(update={"name": f"phase_{i + 1}"})
+        for i, phase in enumerate(file.phase)
+    ]
+    if file.gravity is not None and not any(GRAVITY in phase.targets for phase in phases):
+        targets = {GRAVITY: write(file.gravity.acceleration, "acceleration")}
+        # in one go where that converges: forces of a small part of the weight drown in the rounding of the stresses
+        phases.insert(0, PhaseSection(name=GRAVITY, targets=targets, first_increment=1.0, largest_increment=1.0))
+    return tuple(phases)
+
+
+def _axes(support: ClampSection | RollerSection | SymmetrySection | PrescribedSection) -> Iterable[str]:
+    if isinstance(support, RollerSection | PrescribedSection):
+        return (support.axis,)
+    return "xyz" if isinstance(support, ClampSection) else ("normal",)
+
+
+def _check_faces(actuator: Actuator, used: Iterable[tuple[str, str]]) -> None:
+    for owner, face in used:
+        if face not in actuator.face_names:
+            raise NameNotFoundError(f"{owner}: " + unknown_name("face", face, actuator.face_names))
+
+
+def _check_once(used: Iterable[tuple[str, str]], rule: str) -> None:
+    owners: dict[str, str] = {}
+    for key, owner in used:
+        if key in owners:
+            raise InputError(f"face '{key.split('.')[0]}' is named in {owners[key]} and in {owner}: {rule}")
+        owners[key] = owner

@@ -1,0 +1,138 @@
+"""System 1: the hexagonal-prism actuator of Wang et al. 2022, bent by two neighbouring cavities at one pressure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from pneumorph.closed_form import hexagonal_prism as published
+from pneumorph.errors import InputError
+from pneumorph.geometry import HexagonalPrism
+from pneumorph.solution import Solution
+from pneumorph.studies.comparison import Comparison, ReportedCurve
+from pneumorph.studies.reproductions.reproduction import Reproduction, register
+from pneumorph.studies.study import Study, study_from
+from pneumorph.units import show
+
+DRIVEN = ("cavity_1", "cavity_2")
+COMPARED = (0.04, 0.08, 0.12)  # MPa; above, walls of the real actuator touch, or the run without contact ends
+QUICK_END, END = 0.08, 0.15
+ANGLES = ("chord_angle", "tip_rotation")
+
+_TABLE = "Table 2, finite elements"
+_MEASURED = "eq. 13, polynomial through the experiment"
+_CLOSED_FORM = "eqs. 1-12, closed form as printed"
+_MEANING = {"chord_angle": "line from the clamped to the free end", "tip_rotation": "normal of the free end face"}
+_AGREES = {
+    "chord_angle": "Table 2 agrees with this angle",
+    "tip_rotation": "about twice the chord angle, so not what Table 2 lists",
+}
+_CAUTION = "as printed, the formula gives a pressure that grows like the angle squared: it is no check of the run"
+
+
+def study(quick: bool) -> Study:
+    """Return the study: two neighbouring cavities to 150 kPa, or a coarse mesh to 80 kPa."""
+    end = QUICK_END if quick else END
+    stops = [show(p, "pressure") for p in COMPARED if p < end]
+    table = {
+        "title": "Hexagonal-prism actuator, bending by two neighbouring cavities",
+        "actuator": {"template": "hexagonal-prism"},
+        "material": {"name": "shore-a45-platinum"},
+        "mesh": {"size": "coarse" if quick else "automatic"},
+        "cavity": [{"name": name} for name in DRIVEN],
+        "phase": [
+            {
+                "name": "bend",
+                "targets": dict.fromkeys(DRIVEN, show(end, "pressure")),
+                "states_at": {DRIVEN[0]: stops},
+            }
+        ],
+    }
+    return study_from(table, "hexagonal-prism")
+
+
+def compare(solution: Solution, study: Study) -> tuple[Comparison, ...]:
+    """Return reported and computed angles at 40, 80 and 120 kPa, against each of the study's three sources."""
+    rows = []
+    for name in ANGLES:
+        for source, reported, note in _sources(study):
+            for pressure in COMPARED:
+                computed = _at(solution, name, pressure)
+                missing = [] if computed is not None else [f"not reached: the run ended at {_reached(solution)}"]
+                agrees = [_AGREES[name]] if source == _TABLE else []
+                rows.append(
+                    Comparison(
+                        quantity=f"{name} ({source})",
+                        condition=show(pressure, "pressure"),
+                        reported=math.degrees(reported(pressure)),
+                        computed=None if computed is None else math.degrees(computed),
+                        unit="deg",
+                        note="; ".join([*missing, _MEANING[name], *agrees, *note]),
+                    )
+                )
+    return tuple(rows)
+
+
+def curves(study: Study) -> tuple[ReportedCurve, ...]:
+    """Return the study's table, its polynomial and its closed form as chord angle over pressure."""
+    column = (f"pressure:{DRIVEN[0]}", "chord_angle")
+    table = np.array(published.REPORTED_BENDING)
+    pressure = np.linspace(0.0, 0.16, 81)
+    angle = np.linspace(0.0, published.prism_bending_angle(_actuator(study), study.materials["body"], 0.10), 41)
+    printed = published.prism_pressure(_actuator(study), study.materials["body"], angle)
+    shown = table[:, 0] <= pressure[-1] + 1e-9
+    return (
+        ReportedCurve(_TABLE, *column, table[shown, 0], table[shown, 1], marks=True),
+        ReportedCurve(_MEASURED, *column, pressure, published.measured_bending_angle(pressure)),
+        ReportedCurve(_CLOSED_FORM, *column, printed, angle),
+    )
+
+
+def _actuator(study: Study) -> HexagonalPrism:
+    if not isinstance(study.actuator, HexagonalPrism):
+        raise InputError(f"expected a study of a hexagonal prism, received a {type(study.actuator).__name__}")
+    return study.actuator
+
+
+def _sources(study: Study) -> list[tuple[str, Callable[[float], float], list[str]]]:
+    """Return (source, angle in rad over pressure in MPa, notes) for the three kinds of reported data."""
+    table = {round(p, 9): angle for p, angle in published.REPORTED_BENDING}
+    actuator, material = _actuator(study), study.materials["body"]
+    return [
+        (_TABLE, lambda p: table[round(p, 9)], []),
+        (_MEASURED, lambda p: float(published.measured_bending_angle(p)), ["the fit gives 1.2 deg at no pressure"]),
+        (_CLOSED_FORM, lambda p: published.prism_bending_angle(actuator, material, p), [_CAUTION]),
+    ]
+
+
+def _at(solution: Solution, column: str, pressure: float) -> float | None:
+    """Return a column where the pressure is the given one, None where the run has no such state."""
+    found = np.isclose(solution.history.values(f"pressure:{DRIVEN[0]}"), pressure, rtol=1e-9, atol=0.0)
+    return float(solution.history.values(column)[found][-1]) if found.any() else None
+
+
+def _reached(solution: Solution) -> str:
+    return show(float(solution.history.values(f"pressure:{DRIVEN[0]}").max()), "pressure")
+
+
+register(
+    Reproduction(
+        name="hexagonal-prism",
+        title="Hexagonal-prism bending actuator (system 1)",
+        source="Wang, Zhang, Zhang, Zhao, Peng, Actuators 2022, 11, 125, doi 10.3390/act11050125",
+        study=study,
+        compare=compare,
+        curves=curves,
+        notes=(
+            "Given by the study (Table 1): side, length, core radius, chambers and their inner dimensions, expansion "
+            "wall 2 mm. Assumed: gap 2 mm, top and side walls 3 mm, airway 3 x 3 mm with a roof and sides of 1.5 mm.",
+            "No contact: neighbouring chamber walls pass through each other where they would touch. The study sees "
+            "contact, which resists bending, from about 200 kPa.",
+            "The study's 'bending angle' is not defined in its text. Its Table 2 agrees with the chord angle (line "
+            "from the clamped to the free end); the rotation of the free end face is about twice as large.",
+            "The closed form is evaluated as printed and does not follow the study's own near-linear curve.",
+        ),
+    )
+)

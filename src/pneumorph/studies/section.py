@@ -1,0 +1,118 @@
+"""What the sections of a study file share: quantities as text with a unit, and messages that name the key."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, Field, fields
+from functools import cache
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    PlainSerializer,
+    ValidationError,
+    ValidationInfo,
+    create_model,
+    model_validator,
+)
+
+from pneumorph.errors import InputError, StudyError, UnitError, unknown_name
+from pneumorph.units import parse, show
+
+# tag of the material section that has no law of its own
+LIBRARY = "library"
+
+
+class Section(BaseModel):
+    """A table of a study file: frozen, and every key must be known."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, hide_input_in_errors=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, table: Any) -> Any:
+        if isinstance(table, Mapping):
+            for key in table:
+                if key not in cls.model_fields:
+                    raise StudyError(unknown_name("key", str(key), cls.model_fields))
+        return table
+
+
+@cache
+def quantity(kind: str) -> Any:
+    """Return the type of a quantity of a unit kind: text with a unit in the file, a float in inside units here."""
+
+    def read(value: object, info: ValidationInfo) -> float:
+        # a number is inside already: defaults, and sections made in Python
+        if isinstance(value, float) and info.context is None:
+            return value
+        return parse(value, kind, info.field_name or "value")  # type: ignore[arg-type]
+
+    return Annotated[float, BeforeValidator(read), PlainSerializer(lambda value: write(value, kind))]
+
+
+def write(value: float, kind: str) -> str:
+    """Return an inside value as text that `units.parse` reads back: 0.08 MPa -> '80 kPa'."""
+    return show(value, kind, digits=15)
+
+
+def section_of(owner: type, name: str | None = None, **tag: str) -> type[Section]:
+    """Return the section whose keys are the fields of a dataclass, typed by the unit `kind` in their metadata.
+
+    A `tag` such as template="finger" adds a key with this one value, which tells the sections of a union apart.
+    """
+    keys: dict[str, Any] = {key: (Literal[value], ...) for key, value in tag.items()}
+    hints = get_type_hints(owner)
+    for item in fields(owner):
+        if item.init:
+            keys[item.name] = (_type_of(item, hints[item.name]), ... if item.default is MISSING else item.default)
+    return create_model(name or owner.__name__, __base__=Section, **keys)
+
+
+def _type_of(item: Field[Any], hint: Any) -> Any:
+    kind = item.metadata.get("kind")
+    if kind is None or kind == "count":
+        return hint
+    optional = get_origin(hint) in (Union, UnionType) and type(None) in get_args(hint)
+    return quantity(kind) | None if optional else quantity(kind)
+
+
+def refusal(error: ValidationError, tags: Iterable[str]) -> InputError:
+    """Return the error to raise: one line for each wrong input, with its path; `tags` are not part of a path.
+
+    It is a UnitError if units are all that is wrong, else a StudyError.
+    """
+    hidden, items = set(tags), error.errors()
+    units = all(isinstance(item.get("ctx", {}).get("error"), UnitError) for item in items)
+    return (UnitError if units else StudyError)("\n".join(_line(item, hidden) for item in items))
+
+
+def _line(item: Any, hidden: set[str]) -> str:
+    place = _path([part for part in item["loc"] if part not in hidden])
+    kind, context, value = item["type"], item.get("ctx", {}), item.get("input")
+    if kind == "value_error":  # raised by ourselves: the message is complete
+        text = str(context["error"])
+        owner, _, key = place.rpartition(".")
+        where = owner if text.startswith(f"{key} = ") else place
+        return f"{where}: {text}" if where else text
+    if kind == "missing":
+        return f"{place}: missing"
+    if kind == "union_tag_not_found":
+        return f"{place}: missing {context['discriminator']}"
+    if kind == "union_tag_invalid":
+        key = context["discriminator"].strip("'()")
+        expected = [name.strip("' ") for name in context["expected_tags"].split(",")]
+        expected = [name for name in expected if name != LIBRARY]
+        return f"{place}: " + unknown_name(key, str(context["tag"]), expected)
+    return f"{place or 'study'} = {value!r}: {item['msg'][0].lower()}{item['msg'][1:]}"
+
+
+def _path(parts: list[str | int]) -> str:
+    """Return ('load', 0, 'face') as 'load[1].face': tables of an array count from 1, as a reader does."""
+    text = ""
+    for part in parts:
+        text += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if text else str(part)
+    return text

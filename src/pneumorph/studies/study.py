@@ -1,0 +1,260 @@
+"""A study: the checked contents of a study file, and what it builds."""
+
+from __future__ import annotations
+
+import logging
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from pneumorph.errors import InputError, NameNotFoundError, StudyError, unknown_name
+from pneumorph.geometry import Actuator
+from pneumorph.materials import Material, library
+from pneumorph.mechanics import (
+    Cavity,
+    Clamp,
+    Force,
+    Gravity,
+    Model,
+    Phase,
+    Prescribed,
+    PressureSupply,
+    Programme,
+    Roller,
+    Settings,
+    Supply,
+    Symmetry,
+    Traction,
+    VolumeSupply,
+)
+from pneumorph.mechanics.loads import Load
+from pneumorph.mechanics.supports import Support
+from pneumorph.mesh import Mesh, generate, inspect
+from pneumorph.studies.defaults import GRAVITY, actuator_of, completed
+from pneumorph.studies.measuring import Measure, measures_of
+from pneumorph.studies.schema import LAWS, TAGS, LibraryMaterial, PhaseSection, StudyFile
+from pneumorph.studies.section import refusal
+from pneumorph.studies.writing import to_toml
+from pneumorph.units import parse, show
+
+_log = logging.getLogger(__name__)
+_SUPPLIES: dict[str, Supply] = {"pressure": PressureSupply(), "volume": VolumeSupply()}
+_SUPPORTS = {"clamp": Clamp, "roller": Roller, "symmetry": Symmetry, "prescribed": Prescribed}
+_LOADS: dict[str, Any] = {"force": Force, "traction": Traction}
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What a study builds: all that `solve` takes."""
+
+    model: Model
+    programme: Programme
+    measures: tuple[Measure, ...]
+    settings: Settings
+
+
+@dataclass(frozen=True)
+class Study:
+    """A checked study: everything in it but the mesh is made, and refused if wrong, when the study is.
+
+    name: short name, that of the file. file: the sections with every default filled in (see `defaults.completed`).
+    Raises InputError, one of its kinds, with the section and key that is wrong.
+    """
+
+    name: str
+    file: StudyFile
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "file", completed(self.file, self.actuator))
+        _ = self.materials, self.supports, self.loads, self.cavities, self.measures
+        _check_driven(self.kinds, self.programme)
+        if self.file.gravity is not None:
+            for domain, material in self.materials.items():
+                if material.density is None:
+                    raise InputError(f"gravity: the material of '{domain}' has no density; give density in [material]")
+
+    @property
+    def title(self) -> str:
+        """The title, or the name of the study."""
+        return self.file.title or self.name
+
+    @cached_property
+    def actuator(self) -> Actuator:
+        """The actuator with its dimensions."""
+        return actuator_of(self.file)
+
+    @cached_property
+    def materials(self) -> dict[str, Material]:
+        """Domain -> material."""
+        return {domain: _material(section) for domain, section in self.file.material.items()}
+
+    @cached_property
+    def supports(self) -> tuple[Support, ...]:
+        """Clamps, rollers, symmetry planes and prescribed displacements."""
+        return tuple(_SUPPORTS[item.type](**_fields(item, "type")) for item in self.file.support or ())
+
+    @cached_property
+    def loads(self) -> tuple[Load, ...]:
+        """Forces, tractions and gravity."""
+        loads: list[Load] = [_LOADS[item.type](**_fields(item, "type")) for item in self.file.load]
+        if self.file.gravity is not None:
+            loads.append(Gravity(self.file.gravity.direction, GRAVITY))
+        for load in loads:
+            if len(load.direction) != 3 or not any(load.direction):
+                raise StudyError(f"load '{load.name}': direction = {load.direction}: expected 3 numbers, not all zero")
+        return tuple(loads)
+
+    @cached_property
+    def cavities(self) -> tuple[Cavity, ...]:
+        """The cavities with their supplies."""
+        return tuple(
+            Cavity(item.name, item.faces or (), _SUPPLIES[item.supply], item.mirrors or ())
+            for item in self.file.cavity or ()
+        )
+
+    @cached_property
+    def kinds(self) -> dict[str, str]:
+        """Name -> unit kind of all that the phases can drive; raises InputError for a name given twice."""
+        kinds: dict[str, str] = {}
+        moved = [support for support in self.supports if isinstance(support, Prescribed)]
+        pairs = [(item.name, item.supply.kind) for item in self.cavities]
+        for name, kind in [*pairs, *((item.name, item.kind) for item in (*self.loads, *moved))]:
+            if name in kinds:
+                raise InputError(f"the name '{name}' is given to more than one cavity, load or displacement")
+            kinds[name] = kind
+        return kinds
+
+    @cached_property
+    def programme(self) -> Programme:
+        """The phases with values in inside units."""
+        phases, values = [], dict.fromkeys(self.kinds, 0.0)
+        for section in self.file.phase:
+            phases.append(_phase(section, self.kinds, values))
+            values |= phases[-1].targets
+        return Programme(tuple(phases))
+
+    @cached_property
+    def settings(self) -> Settings:
+        """Settings of the solver."""
+        return Settings(**_fields(self.file.solver))
+
+    @cached_property
+    def measures(self) -> tuple[Measure, ...]:
+        """What is measured in every state; by default all that the actuator's faces allow."""
+        return measures_of(self.file.measures, self.actuator)
+
+    def mesh(self) -> Mesh:
+        """Return the mesh; what its quality check warns of goes to the log. Raises MeshError."""
+        section = self.file.mesh
+        size = section.size if isinstance(section.size, float) else None
+        mesh = generate(
+            self.actuator,
+            size,
+            coarse=section.size == "coarse",
+            grading=section.grading,
+            detail=section.detail,
+            wall_size=section.wall_size,
+        )
+        for warning in inspect(mesh).warnings:
+            _log.warning("mesh: %s", warning)
+        return mesh
+
+    def build(self) -> Problem:
+        """Return model, programme, measures and settings; meshes. Raises MeshError, LeakingCavityError."""
+        model = Model(self.mesh(), self.materials, self.supports, self.loads, self.cavities)
+        return Problem(model, self.programme, self.measures, self.settings)
+
+    def resolved(self) -> dict[str, Any]:
+        """Return the study as plain data with every default written out, quantities as text with units."""
+        data = self.file.model_dump(exclude_none=True)
+        data["phase"] = [{key: value for key, value in item.items() if value != {}} for item in data["phase"]]
+        if not data["load"]:
+            del data["load"]
+        return data | {"title": self.title, "measures": [measure.name for measure in self.measures]}
+
+    def resolved_text(self) -> str:
+        """Return the same as the text of a study file that makes an equal study."""
+        return to_toml(self.resolved())
+
+
+def load_study(path: Path | str) -> Study:
+    """Return the study in a TOML file.
+
+    Raises StudyError for a file that is missing, not readable or not TOML, and for unknown keys, missing entries and
+    wrong types; UnitError, GeometryError, NameNotFoundError and other InputErrors for values that are refused.
+    """
+    path = Path(path)
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise StudyError(f"cannot read the study file '{path}': {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise StudyError(f"'{path}' is not a TOML file: {error}") from error
+    try:
+        return study_from(table, path.stem)
+    except InputError as error:
+        raise type(error)(f"{path}: {error}") from error
+
+
+def study_from(table: Mapping[str, Any], name: str) -> Study:
+    """Return the study with the contents of a study file as plain data (quantities as text with units)."""
+    try:
+        file = StudyFile.model_validate(table, context={"quantities": "text"})
+    except ValidationError as error:
+        raise refusal(error, TAGS) from None
+    return Study(name, file)
+
+
+def _fields(section: Any, *but: str) -> dict[str, Any]:
+    return {name: getattr(section, name) for name in type(section).model_fields if name not in but}
+
+
+def _material(section: Any) -> Material:
+    if not isinstance(section, LibraryMaterial):
+        return LAWS[section.law](**_fields(section, "law"))
+    changes = {name: value for name, value in _fields(section, "name").items() if value is not None}
+    return replace(library.material(section.name), **changes)
+
+
+def _phase(section: PhaseSection, kinds: Mapping[str, str], start: Mapping[str, float]) -> Phase:
+    """Return a phase; `start` is where the targets stand before it."""
+    owner = f"phase '{section.name}'"
+
+    def value(name: str, text: str, what: str) -> float:
+        if name not in kinds:
+            raise NameNotFoundError(f"{owner}: " + unknown_name("target", name, kinds))
+        return parse(text, kinds[name], f"{owner}: {what}.{name}")
+
+    targets = {name: value(name, text, "targets") for name, text in section.targets.items()}
+    marks = set()
+    for name, texts in section.states_at.items():
+        for text in texts:
+            wanted = value(name, text, "states_at")
+            if name not in targets:
+                raise StudyError(f"{owner}: states_at.{name}: expected one of its targets, {', '.join(targets)}")
+            first, last = start[name], targets[name]
+            fraction = (wanted - first) / (last - first) if last != first else -1.0
+            if not 0.0 < fraction <= 1.0:
+                limits = f"after {show(first, kinds[name])}, up to {show(last, kinds[name])}"
+                raise StudyError(f"{owner}: states_at.{name} = '{text}': expected a value of the phase, {limits}")
+            marks.add(fraction)
+    return Phase(
+        str(section.name),
+        targets,
+        tuple(sorted(marks - {1.0})),
+        section.first_increment,
+        section.largest_increment,
+        section.smallest_increment,
+    )
+
+
+def _check_driven(kinds: Mapping[str, str], programme: Programme) -> None:
+    driven = {name for phase in programme.phases for name in phase.targets}
+    for name, kind in kinds.items():
+        if name not in driven and kind not in ("pressure", "volume"):
+            raise StudyError(f"'{name}' is in the study, but no phase drives it")

@@ -1,0 +1,107 @@
+import csv
+import io
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from pneumorph.closed_form import hexagonal_prism as published
+from pneumorph.errors import InputError, NameNotFoundError
+from pneumorph.geometry import HexagonalPrism
+from pneumorph.solution import Column, History
+from pneumorph.studies import Comparison, reproductions, study_from
+from pneumorph.studies.comparison import COLUMNS, to_csv
+from pneumorph.studies.reproductions import hexagonal_prism
+
+
+def run_to(*pressures):
+    """Return what stands for a solution: chord angles 100 rad/MPa times the pressure, tip rotations twice that."""
+    columns = [Column("pressure:cavity_1", "", "pressure"), Column("chord_angle", "", "angle")]
+    columns.append(Column("tip_rotation", "", "angle"))
+    rows = [{"pressure:cavity_1": p, "chord_angle": p, "tip_rotation": 2.0 * p} for p in (0.0, *pressures)]
+    return SimpleNamespace(history=History(columns, rows))
+
+
+def test_the_hexagonal_prism_is_the_published_one_with_two_neighbouring_cavities_at_one_pressure():
+    study = hexagonal_prism.study(quick=False)
+    assert study.actuator == HexagonalPrism()
+    assert [cavity.name for cavity in study.cavities] == ["cavity_1", "cavity_2"]
+    assert study.materials["body"].c10 == 0.11
+    (phase,) = study.programme.phases
+    assert phase.targets == {"cavity_1": 0.15, "cavity_2": 0.15}
+    pressures = [study.programme.values(mark)["cavity_2"] for mark in phase.marks]
+    np.testing.assert_allclose(pressures, [0.04, 0.08, 0.12], rtol=1e-14)
+
+
+def test_the_quick_run_is_coarse_and_stops_at_80_kpa():
+    study = hexagonal_prism.study(quick=True)
+    assert study.file.mesh.size == "coarse"
+    assert study.programme.phases[0].targets["cavity_1"] == 0.08
+    assert study.programme.phases[0].marks == (0.5,)
+
+
+def test_both_angles_are_compared_with_all_three_sources_at_three_pressures():
+    study = hexagonal_prism.study(quick=False)
+    rows = hexagonal_prism.compare(run_to(0.04, 0.08, 0.12), study)
+    assert len(rows) == 2 * 3 * 3
+    table = [row for row in rows if row.quantity == "chord_angle (Table 2, finite elements)"]
+    assert [(row.condition, row.unit) for row in table] == [("40 kPa", "deg"), ("80 kPa", "deg"), ("120 kPa", "deg")]
+    assert [row.reported for row in table] == pytest.approx([5.5, 13.7, 22.6])
+    assert table[0].computed == pytest.approx(math.degrees(0.04))
+    assert table[0].relative_difference == pytest.approx(math.degrees(0.04) / 5.5 - 1.0)
+    assert "Table 2 agrees with this angle" in table[0].note
+    tip = [row for row in rows if row.quantity == "tip_rotation (Table 2, finite elements)"]
+    assert tip[0].computed == pytest.approx(2.0 * table[0].computed)
+
+
+def test_the_closed_form_and_the_experiment_stand_in_the_rows():
+    study = hexagonal_prism.study(quick=False)
+    rows = {(row.quantity, row.condition): row for row in hexagonal_prism.compare(run_to(0.04), study)}
+    measured = rows["chord_angle (eq. 13, polynomial through the experiment)", "80 kPa"]
+    assert measured.reported == pytest.approx(float(np.degrees(published.measured_bending_angle(0.08))))
+    closed = rows["chord_angle (eqs. 1-12, closed form as printed)", "80 kPa"]
+    angle = math.radians(closed.reported)
+    assert published.prism_pressure(study.actuator, study.materials["body"], angle) == pytest.approx(0.08)
+    assert "as printed" in closed.note
+
+
+def test_rows_that_were_not_reached_stay_empty_and_say_so():
+    rows = hexagonal_prism.compare(run_to(0.04, 0.08), hexagonal_prism.study(quick=True))
+    late = [row for row in rows if row.condition == "120 kPa"]
+    assert len(late) == 6
+    assert all(row.computed is None and row.relative_difference is None for row in late)
+    assert all("not reached: the run ended at 80 kPa" in row.note for row in late)
+
+
+def test_reported_curves_pass_through_the_reported_points():
+    table, measured, printed = hexagonal_prism.curves(hexagonal_prism.study(quick=False))
+    assert table.marks
+    assert (table.x, table.y) == ("pressure:cavity_1", "chord_angle")
+    assert math.degrees(table.y_values[1]) == pytest.approx(13.7)
+    assert np.interp(0.08, measured.x_values, measured.y_values) == pytest.approx(
+        float(published.measured_bending_angle(0.08)), rel=1e-3
+    )
+    assert printed.x_values[-1] == pytest.approx(0.1)
+
+
+def test_another_actuator_is_refused():
+    study = study_from({"actuator": {"template": "finger"}, "phase": [{"targets": {"cavity": "1 kPa"}}]}, "x")
+    with pytest.raises(InputError, match="expected a study of a hexagonal prism, received a Finger"):
+        hexagonal_prism.curves(study)
+
+
+def test_reproductions_are_known_by_name():
+    assert "hexagonal-prism" in reproductions.names()
+    assert "doi 10.3390/act11050125" in reproductions.reproduction("hexagonal-prism").source
+    with pytest.raises(NameNotFoundError, match="'hexagonal-prsm': did you mean 'hexagonal-prism'"):
+        reproductions.reproduction("hexagonal-prsm")
+
+
+def test_comparison_csv_has_its_columns_and_empty_fields():
+    rows = [Comparison("a, b", "1 kPa", 2.0, 2.5, "deg", 'say "so"'), Comparison("c", "", 1.0, None, "")]
+    lines = list(csv.reader(io.StringIO(to_csv(rows))))
+    assert tuple(lines[0]) == COLUMNS
+    assert lines[1] == ["a, b", "1 kPa", "2", "2.5", "deg", "0.25", 'say "so"']
+    assert lines[2] == ["c", "", "1", "", "", "", ""]
+    assert Comparison("c", "", 0.0, 1.0, "").relative_difference is None
