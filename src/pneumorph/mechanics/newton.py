@@ -114,7 +114,7 @@ class Newton:
         load = self._load(values)
         given = self.model.prescribed(values)[self._held]
         unstable: int | None = 0
-        best = np.inf
+        best, settled = np.inf, False
         for iteration in range(iterations):
             assembly = self._assemble(trial)
             position = self.model.mesh.points + trial.displacement
@@ -128,7 +128,7 @@ class Newton:
             error = self._error(residual, applied, equations, volumes, move)
             if not np.isfinite(error):
                 raise IncrementFailedError("the residual is not finite")
-            if error <= tolerance and iteration > 0:
+            if (error <= tolerance or (settled and error <= 1e-3)) and iteration > 0:
                 ratio = self.model.body.smallest_volume_ratio(position, fine=True)
                 reactions = np.where(self._free, 0.0, residual)
                 return Converged(trial, volumes, reactions, iteration, unstable, ratio)
@@ -140,9 +140,12 @@ class Newton:
             step = self._step(matrix, residual, gradients, equations, move)
             unstable = step.unstable_modes
             dq = self.model.body.pressure_step(assembly.gains, step.du)
-            factor = min(1.0, settings.largest_step * self.model.mesh.size / max(np.abs(step.du).max(), 1e-300))
+            largest = float(np.abs(step.du).max())
+            factor = min(1.0, settings.largest_step * self.model.mesh.size / max(largest, 1e-300))
             factor = self._keep_orientation(position, step.du, factor)
             trial = trial.stepped(factor, step.du, dq, step.dp)
+            # under a very small load the residual stays at the rounding of the bulk term: then the step tells
+            settled = factor == 1.0 and largest <= 1e-10 * self.model.mesh.size
         raise IncrementFailedError(f"no convergence in {iterations} iterations")
 
     def _assemble(self, trial: Trial) -> Assembly:

@@ -29,7 +29,8 @@ _PROBE = "from pneumorph.report.render import _probe; _probe()"
 class Layer:
     """Something to draw at points (n, 3), mm: triangles (t, 3), or segments (s, 2) if there are none.
 
-    colour: red, green, blue from 0 to 1; of the whole layer, or (n, 3) of its points, or (t, 3) of its triangles.
+    colour: red, green, blue from 0 to 1; of the whole layer, or (n, 3) of its points, or (t, 3) of its triangles (then
+    triangles of different colours share no point).
     shaded: lit by a lamp, or flat. width: of lines, in pixels.
     """
 
@@ -75,7 +76,7 @@ class Scene:
         plotter.clear_actors()
         for layer in layers:
             if layer.triangles is not None and len(layer.triangles):
-                _add_surface(plotter, layer)
+                _add_surface(plotter, layer, self._view)
             elif layer.segments is not None and len(layer.segments):
                 _add_lines(plotter, layer, self._scale)
         plotter.renderer.ResetCameraClippingRange()
@@ -122,7 +123,7 @@ def check() -> str:
 def _probe() -> None:
     """Draw one triangle and print the name of the window class."""
     plotter = _plotter((64, 64))
-    _add_surface(plotter, Layer(np.eye(3), np.array([[0, 1, 2]])))
+    _add_surface(plotter, Layer(np.eye(3), np.array([[0, 1, 2]])), View((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)))
     plotter.reset_camera()
     if np.ptp(_picture(plotter)) == 0:
         raise EngineError("the picture is empty")
@@ -146,10 +147,6 @@ def _plotter(size: tuple[int, int]) -> Any:
         os.environ.setdefault("EGL_LOG_LEVEL", "fatal")
     plotter = pyvista.Plotter(off_screen=True, window_size=size, lighting=None)
     plotter.set_background("white")
-    lamp = pyvista.Light(light_type="headlight", intensity=0.8)
-    side = pyvista.Light(position=(-0.6, 0.9, 0.7), light_type="camera light", intensity=0.35)
-    plotter.add_light(lamp)
-    plotter.add_light(side)
     return plotter
 
 
@@ -172,22 +169,37 @@ def _picture(plotter: Any) -> Picture:
     return np.ascontiguousarray(pixels[::-1])
 
 
-def _add_surface(plotter: Any, layer: Layer) -> None:
+def _add_surface(plotter: Any, layer: Layer, view: View) -> None:
     pyvista = _pyvista()
     assert layer.triangles is not None
-    points, triangles = layer.points, layer.triangles
-    colour = np.asarray(layer.colour, dtype=float)
-    mesh = pyvista.PolyData.from_regular_faces(points.astype(np.float32), triangles)
-    style: dict[str, Any] = {"color": tuple(colour)} if colour.ndim == 1 else {"rgb": True, "scalars": "colour"}
-    if colour.ndim == 2:
-        data = mesh.point_data if len(colour) == len(points) else mesh.cell_data
-        data["colour"] = np.round(255.0 * np.clip(colour, 0.0, 1.0)).astype(np.uint8)
-    if layer.shaded:
-        mesh.point_data.active_normals = normals(points, triangles).astype(np.float32)
+    mesh = pyvista.PolyData.from_regular_faces(layer.points.astype(np.float32), layer.triangles)
+    mesh.point_data["colour"] = np.round(255.0 * np.clip(_lit(layer, view), 0.0, 1.0)).astype(np.uint8)
     plotter.add_mesh(
-        mesh, opacity=layer.opacity, lighting=layer.shaded, ambient=0.5, diffuse=0.55, specular=0.0,
-        show_scalar_bar=False, copy_mesh=False, reset_camera=False, render=False, **style,
+        mesh, rgb=True, scalars="colour", opacity=layer.opacity, lighting=False, show_scalar_bar=False,
+        copy_mesh=False, reset_camera=False, render=False,
     )  # fmt: skip
+
+
+def _lit(layer: Layer, view: View) -> Array:
+    """Return the colours (n, 3) of a layer's points under a lamp at the camera and one above on the left.
+
+    Done here, because without a graphics card lamps cost much of the time of a picture.
+    """
+    assert layer.triangles is not None
+    colour = np.asarray(layer.colour, dtype=float)
+    if colour.ndim == 2 and len(colour) != len(layer.points):
+        of_triangles, colour = colour, np.zeros((len(layer.points), 3))
+        colour[layer.triangles.ravel()] = np.repeat(of_triangles, 3, axis=0)
+    colour = np.broadcast_to(colour, (len(layer.points), 3))
+    if not layer.shaded:
+        return colour
+    normal = normals(layer.points, layer.triangles)
+    away, up = np.array(view.direction), np.array(view.up)
+    side = 0.7 * away + 0.6 * up - 0.4 * view.right
+    facing = normal @ away
+    other = (normal @ side) / np.linalg.norm(side) * np.where(facing < 0.0, -1.0, 1.0)  # both sides are seen
+    light = 0.5 + 0.42 * np.abs(facing) + 0.16 * np.maximum(other, 0.0)
+    return np.asarray(colour * light[:, None])
 
 
 def _add_lines(plotter: Any, layer: Layer, scale: int) -> None:
