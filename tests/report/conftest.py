@@ -6,7 +6,6 @@ import pytest
 from pneumorph.errors import EngineError
 from pneumorph.geometry import ThickSphere
 from pneumorph.materials import NeoHookean
-from pneumorph.measures import Diameter
 from pneumorph.mechanics import Cavity, Clamp, Model, Phase, Programme, Roller, Symmetry, Traction, VolumeSupply
 from pneumorph.mesh import box, generate, rectangle
 from pneumorph.report import render
@@ -39,10 +38,10 @@ def balloon(tmp_path_factory) -> Solution:
 def beam() -> Solution:
     """A run in memory: a clamped block bent by a traction, 10 x 2 x 2 mm."""
     model = Model(
-        box(5, 1, 1, length=10.0, width=2.0, height=2.0),
+        box(5, 1, 1, lengths=(10.0, 2.0, 2.0)),
         {"body": RUBBER},
-        supports=(Clamp("left"),),
-        loads=(Traction("right", (0.0, 0.0, -1.0), "push"),),
+        supports=(Clamp("x0"),),
+        loads=(Traction("x1", (0.0, 0.0, -1.0), "push"),),
     )
     programme = Programme((Phase("push", {"push": 0.0015}, first=0.5, largest=0.5),))
     return solve(model, programme)
@@ -60,6 +59,3 @@ def drawable() -> None:
         render.check()
     except EngineError as error:
         pytest.skip(str(error))
-
-
-__all__ = ["Diameter"]

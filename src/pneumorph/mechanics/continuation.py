@@ -1,9 +1,10 @@
 """Load stepping: increments that grow where they are easy, are cut where they fail, and always leave a state behind.
 
-Where increments fail although they were cut (a wall or web buckles locally), a viscous term is added to the potential,
+Where Newton's method finds no state (a wall or web buckles locally), a viscous term is added to the potential,
     c / 2 int |u - u_n|^2 dV,
-with u_n the last converged displacement: the step of a gradient flow, so that the body slides to its next stable
-state. c is given up again as soon as increments succeed; what the term dissipates is recorded in every state.
+with u_n the displacement before: a row of such steps at fixed targets, with c falling to zero, slides the body to its
+next stable state. Only that state, in equilibrium without viscosity, is kept; what the slide dissipated is recorded.
+Sliding over the whole increment is tried before the increment is cut: cutting first only creeps up to the limit point.
 """
 
 from __future__ import annotations
@@ -47,7 +48,6 @@ def march(
         phase = programme.phases[number]
         done = last.time - number
         planned = last.next_increment if done > 0.0 else phase.first
-        cuts = 0
         while True:
             ends = [mark for mark in (*sorted(phase.marks), 1.0) if mark > done + 1e-12]
             increment = min(planned, ends[0] - done)
@@ -55,17 +55,18 @@ def march(
                 increment = ends[0] - done
             fraction = ends[0] if increment == ends[0] - done else done + increment
             time = number + fraction
-            lost = 0.0
+            values, lost = programme.values(time), 0.0
             try:
-                if cuts < 2 or not settings.viscosity:
-                    found = newton.solve(_predict(past, time), programme.values(time), Anchor(0.0, last.displacement))
-                else:
-                    found, lost = _relax(newton, last, programme.values(time), scale)
+                try:
+                    found = newton.solve(_predict(past, time), values, Anchor(0.0, last.displacement))
+                except IncrementFailedError as failure:
+                    if not settings.viscosity:
+                        raise
+                    _log.info("phase %s at %.4f: %s; sliding viscously", phase.name, fraction, failure)
+                    found, lost = _slide(newton, last, values, scale)
+                break
             except IncrementFailedError as failure:
                 reason = str(failure)
-            else:
-                break
-            cuts += 1
             planned = settings.cut * increment
             _log.info("phase %s at %.4f: %s; increment cut to %.2g", phase.name, fraction, reason, planned)
             if planned < phase.smallest:
@@ -75,12 +76,12 @@ def march(
                 )
         if found.iterations <= settings.few and increment >= 0.999 * planned:
             planned = min(settings.growth * increment, phase.largest)
-        state = _state(last, phase.name, time, found, programme.values(time), lost, planned, 0.0, newton)
+        state = _state(last, phase.name, time, found, values, lost, planned, 0.0, newton)
         past = [*past[-2:], state]
         yield state
 
 
-def _relax(newton: Newton, last: State, values: dict[str, float], scale: float) -> tuple[Converged, float]:
+def _slide(newton: Newton, last: State, values: dict[str, float], scale: float) -> tuple[Converged, float]:
     """Return the equilibrium that viscous sliding from the last state leads to, and the energy lost on the way, mJ."""
     trial = Trial(last.displacement, last.pressure_modes, np.array([last.pressure[n] for n in last.pressure]))
     coefficient, lost, count = newton.settings.viscosity * scale, 0.0, 0
@@ -104,7 +105,8 @@ def _relax(newton: Newton, last: State, values: dict[str, float], scale: float) 
                 found = newton.solve(trial, values, Anchor(0.0, trial.displacement))
             except IncrementFailedError:
                 continue
-            return replace(found, iterations=count + found.iterations), lost
+            if not found.unstable_modes:  # a saddle on the way is not where a slide ends
+                return replace(found, iterations=count + found.iterations), lost
     raise IncrementFailedError("viscous sliding found no equilibrium")
 
 
