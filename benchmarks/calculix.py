@@ -15,6 +15,7 @@ from typing import Any
 PACKAGE = "calculix-ccx"
 # corners (from 0) of the faces P1..P4 of C3D10; its nodes are numbered like VTK's quadratic tetrahedron
 FACES = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
+UNUSED = "1.e20"
 VARIABLES = (
     "OMP_NUM_THREADS", "NUMBER_OF_CPUS", "CCX_NPROC_EQUATION_SOLVER", "CCX_NPROC_RESULTS", "CCX_NPROC_STIFFNESS",
 )  # fmt: skip
@@ -64,7 +65,8 @@ def write_input(
 
     points (n, 3) in mm and cells (m, 10): arrays; clamp, tip: nodes; pressed (k, 3 or more): corners of the faces
     under pressure; yeoh: C10, C20, C30 in MPa; bulk, pressure: MPa; first: first increment of the step of length 1.
-    CalculiX's volumetric energy is (J - 1)^2 / D1, so that D1 = 2 / bulk.
+    CalculiX's volumetric energy is the sum of (J - 1)^2i / Di, so that D1 = 2 / bulk. A D2 or D3 of zero it replaces by
+    a default; `UNUSED` switches these terms off.
     """
     lines = ["*NODE, NSET=ALL"]
     lines += [f"{i}, {x:.12g}, {y:.12g}, {z:.12g}" for i, (x, y, z) in enumerate(points.tolist(), 1)]
@@ -72,9 +74,9 @@ def write_input(
     lines += [", ".join(map(str, (i, *(n + 1 for n in cell)))) for i, cell in enumerate(cells.tolist(), 1)]
     lines += ["*NSET, NSET=CLAMP", *_rows(clamp), "*NSET, NSET=TIP", *_rows(tip)]
     c10, c20, c30 = yeoh
-    lines += ["*MATERIAL, NAME=RUBBER", "*HYPERELASTIC, YEOH", f"{c10}, {c20}, {c30}, {2.0 / bulk!r}, 0., 0."]
+    lines += ["*MATERIAL, NAME=RUBBER", "*HYPERELASTIC, YEOH", f"{c10}, {c20}, {c30}, {2.0 / bulk!r}, {UNUSED}, {UNUSED}"]
     lines += ["*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER", "*BOUNDARY", "CLAMP, 1, 3"]
-    lines += ["*STEP, NLGEOM, INC=10000", "*STATIC", f"{first}, 1.", "*DLOAD"]
+    lines += ["*STEP, NLGEOM, INC=10000", "*STATIC", f"{first}, 1., 1.e-6", "*DLOAD"]
     lines += [f"{cell}, P{face}, {pressure!r}" for cell, face in _element_faces(cells, pressed)]
     lines += ["*NODE PRINT, NSET=TIP, FREQUENCY=10000", "U", "*END STEP", ""]
     path.write_text("\n".join(lines))
@@ -83,7 +85,8 @@ def write_input(
 def progress(job: Path) -> Progress:
     """Return how far a run came, from its .sta (converged increments) and .cvg (all iterations)."""
     rows = [line.split() for line in job.with_suffix(".sta").read_text().splitlines()]
-    done = [row for row in rows if len(row) == 7 and row[0].isdigit()]
+    # the attempt's number ends in U where the attempt failed
+    done = [row for row in rows if len(row) == 7 and row[0].isdigit() and not row[2].endswith("U")]
     every = [line.split() for line in job.with_suffix(".cvg").read_text().splitlines()]
     iterations = sum(1 for row in every if len(row) > 4 and row[0].isdigit())
     good = sum(int(row[3]) for row in done)

@@ -90,8 +90,8 @@ class Model:
     def prescribed(self, values: Mapping[str, float]) -> Array:
         """Return the displacement (nodes * d,) that supports give: zero, or what `values` (mm) say by name."""
         result = np.zeros(self.mesh.points.size)
-        for support in self._moved:
-            result[support.driven(self.mesh)] = values.get(support.name, 0.0)
+        for moved in self._moved:
+            result[moved.driven(self.mesh)] = values.get(moved.name, 0.0)
         for support in self.supports:
             if not isinstance(support, Prescribed):
                 result[support.held(self.mesh)] = 0.0

@@ -71,7 +71,7 @@ def _solid(faces, position, origin, project, shape, gradient, weight, first, sec
 
 
 def _planar(
-    faces: Array, position: Array, origin: Array, project: Array, axisymmetric: bool,
+    faces: NDArray[np.int64], position: Array, origin: Array, project: Array, axisymmetric: bool,
     shape: Array, gradient: Array, weight: Array, first: Array, second: Array | None,
 ) -> float:  # fmt: skip
     """Return the same for edges in the plane: area for 1 mm of depth, or the volume of revolution.

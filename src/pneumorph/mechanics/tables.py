@@ -49,14 +49,14 @@ class CellTable:
 
 def reference_nodes(kind: str) -> Array:
     """Return the reference coordinates (n, d) of the nodes in VTK's order."""
-    points: Array = _element(kind).points[_FROM_BASIX[kind]]
+    points: Array = np.asarray(_element(kind).points, dtype=float)[_FROM_BASIX[kind]]
     return points
 
 
 def tabulate(kind: str, points: Array) -> tuple[Array, Array]:
     """Return shape functions (q, n) and their reference gradients (q, n, d) at reference points (q, d)."""
     order = _FROM_BASIX[kind]
-    table = _element(kind).tabulate(1, points)[:, :, :, 0][:, :, order]
+    table: Array = np.asarray(_element(kind).tabulate(1, points), dtype=float)[:, :, :, 0][:, :, order]
     return np.ascontiguousarray(table[0]), np.ascontiguousarray(np.moveaxis(table[1:], 0, -1))
 
 
@@ -68,7 +68,7 @@ def cell_table(kind: str, pressure: str = "linear") -> CellTable:
     centred = points - points.mean(axis=0)
     ones = np.ones((len(points), 1))
     modes = np.hstack([ones, centred]) if pressure == "linear" else ones
-    finer, _ = basix.make_quadrature(_CELLS[kind], 4)
+    finer, _ = _quadrature(_CELLS[kind], 4)
     check_shape, check_gradient = tabulate(kind, finer)
     return CellTable(kind, shape, gradient, weight, modes, check_shape, check_gradient)
 
@@ -76,7 +76,7 @@ def cell_table(kind: str, pressure: str = "linear") -> CellTable:
 @cache
 def face_table(kind: str) -> tuple[Array, Array, Array]:
     """Return shape (q, n), gradient (q, n, d) and weight (q,) that integrate the volume under a face exactly."""
-    points, weight = basix.make_quadrature(_CELLS[kind], {"triangle6": 4, "quad9": 6, "line3": 6}[kind])
+    points, weight = _quadrature(_CELLS[kind], {"triangle6": 4, "quad9": 6, "line3": 6}[kind])
     shape, gradient = tabulate(kind, points)
     return shape, gradient, weight
 
@@ -89,9 +89,13 @@ def _element(kind: str) -> basix.finite_element.FiniteElement:
 def _rule(kind: str) -> tuple[Array, Array]:
     """Return the quadrature points and weights in which stiffness and stress live."""
     if kind == "wedge18":  # 6 points in the triangle times 3 across: basix's own rule of that degree takes 27
-        plane, plane_weight = basix.make_quadrature(basix.CellType.triangle, 4)
-        line, line_weight = basix.make_quadrature(basix.CellType.interval, 4)
+        plane, plane_weight = _quadrature(basix.CellType.triangle, 4)
+        line, line_weight = _quadrature(basix.CellType.interval, 4)
         points = np.array([[*p, z[0]] for z in line for p in plane])
         return points, np.array([a * b for b in line_weight for a in plane_weight])
-    points, weight = basix.make_quadrature(_CELLS[kind], 2)
-    return points, weight
+    return _quadrature(_CELLS[kind], 2)
+
+
+def _quadrature(cell: basix.CellType, degree: int) -> tuple[Array, Array]:
+    points, weight = basix.make_quadrature(cell, degree)
+    return np.asarray(points, dtype=float), np.asarray(weight, dtype=float)

@@ -89,7 +89,9 @@ def outline(mesh: Mesh, without: Collection[str] = ()) -> Lines:
     if mesh.dimension == 2:
         return _edge_lines(len(mesh.points), np.concatenate([skin.nodes for skin in boundary(mesh.blocks)]))
     edges, normals, owners = [], [], []
-    for number, (name, block) in enumerate(named_blocks(mesh)):
+    blocks = named_blocks(mesh)
+    names = list(dict.fromkeys(name for name, _ in blocks))
+    for name, block in blocks:
         if name in without:
             continue
         local = EDGES[block.kind]
@@ -99,7 +101,7 @@ def outline(mesh: Mesh, without: Collection[str] = ()) -> Lines:
         normal = np.cross(tangent[..., 0], tangent[..., 1])
         normals.append((normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-300)).reshape(-1, 3))
         edges.append(block.nodes[:, np.array(local)].reshape(-1, 3))
-        owners.append(np.full(len(edges[-1]), number))
+        owners.append(np.full(len(edges[-1]), names.index(name)))
     edge, normal, owner = np.concatenate(edges), np.concatenate(normals), np.concatenate(owners)
     order = np.lexsort(np.sort(edge[:, :2], axis=1).T)
     edge, normal, owner = edge[order], normal[order], owner[order]
