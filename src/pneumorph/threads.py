@@ -10,6 +10,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from itertools import pairwise
 from typing import TypeVar
 
 import psutil
@@ -56,4 +57,4 @@ def slices(count: int) -> Iterator[slice]:
     """Yield one contiguous slice of range(count) for each thread; empty ones are left out."""
     threads = thread_count()
     bounds = [count * i // threads for i in range(threads + 1)]
-    return (slice(a, b) for a, b in zip(bounds[:-1], bounds[1:], strict=True) if b > a)
+    return (slice(a, b) for a, b in pairwise(bounds) if b > a)

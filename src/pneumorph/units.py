@@ -71,7 +71,7 @@ def parse(text: str, kind: str, name: str = "value") -> float:
     if not isinstance(text, str):
         raise UnitError(f"{name} = {text!r}: expected {example}")
     try:
-        quantity = _registry().Quantity(re.sub(r"([A-Za-z])([23])\b", r"\1**\2", _plain(text.strip())))
+        quantity: pint.Quantity = _registry().Quantity(re.sub(r"([A-Za-z])([23])\b", r"\1**\2", _plain(text.strip())))
         value = float(quantity.to(inside or "dimensionless").magnitude)
     except (pint.PintError, TypeError, ValueError, AttributeError, AssertionError, ArithmeticError) as error:
         reason = f" ({error})" if isinstance(error, pint.PintError) else ""

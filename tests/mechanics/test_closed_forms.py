@@ -30,7 +30,7 @@ def wall(shape, material, cells, pressure="constant"):
     """Return the model of a wall with `cells` cells across it and square cells."""
     if shape == "revolved tube":
         mesh = rectangle(
-            cells, cells, lambda x: x + [INNER, 0.0], width=OUTER - INNER, height=3.0, space="axisymmetric"
+            cells, cells, lambda x: x + np.array([INNER, 0.0]), width=OUTER - INNER, height=3.0, space="axisymmetric"
         )
         supports = (Roller("bottom", "y"), Roller("top", "y"))
         mirrors = ("bottom", "top")
@@ -39,9 +39,7 @@ def wall(shape, material, cells, pressure="constant"):
         mesh = rectangle(cells, 3 * cells, bent(INNER, OUTER), space=space)
         supports = (Symmetry("bottom"), Symmetry("top"))
         mirrors = ("bottom", "top") if shape == "tube" else ("bottom",)
-    return Model(
-        mesh, {"body": material}, supports, (), (Cavity("c", ("left",), mirrors=mirrors),), pressure=pressure
-    )
+    return Model(mesh, {"body": material}, supports, (), (Cavity("c", ("left",), mirrors=mirrors),), pressure=pressure)
 
 
 def closed(shape):

@@ -6,8 +6,20 @@ import pytest
 from pneumorph.errors import NotConvergedError
 from pneumorph.materials import NeoHookean, Yeoh
 from pneumorph.mechanics import (
-    Cavity, Clamp, Force, Gravity, Model, Phase, Prescribed, Programme, Roller, Settings, Symmetry, Traction,
-    VolumeSupply, march,
+    Cavity,
+    Clamp,
+    Force,
+    Gravity,
+    Model,
+    Phase,
+    Prescribed,
+    Programme,
+    Roller,
+    Settings,
+    Symmetry,
+    Traction,
+    VolumeSupply,
+    march,
 )  # fmt: skip
 from pneumorph.mechanics.newton import Anchor, Newton, Trial
 from pneumorph.mesh.mesh import CellBlock, FaceBlock, Mesh
@@ -53,7 +65,9 @@ def two_holes():
 
     def removed(x):
         row = (x[:, 1] > 1.0) & (x[:, 1] < 2.0)
-        return np.where(row & (np.abs(x[:, 0] - 1.5) < 0.5), "a", np.where(row & (np.abs(x[:, 0] - 4.5) < 0.5), "b", ""))
+        return np.where(
+            row & (np.abs(x[:, 0] - 1.5) < 0.5), "a", np.where(row & (np.abs(x[:, 0] - 4.5) < 0.5), "b", "")
+        )
 
     return without(rectangle(6, 4, width=6.0, height=4.0), removed)
 
@@ -269,10 +283,10 @@ def test_an_arch_snaps_through_under_its_load_and_the_lost_energy_is_recorded():
 
 
 def test_the_energy_lost_in_a_snap_closes_the_balance():
-    states = run(arch(), Phase("push", {"push": 0.004}, first=0.05, largest=0.05))
-    energies = states[-1].energies
-    assert energies.viscous > 0.3 * energies.load
-    assert abs(energies.relative_error) < 0.1
+    """One increment goes over the whole snap: nearly all that the load gives at its new value is lost."""
+    state = run(arch(), even("push", {"push": 0.002}, 1))[-1]
+    assert state.energies.viscous > 0.5 * state.energies.load
+    assert abs(state.energies.relative_error) < 0.1
 
 
 def balloon(supply=None):
@@ -305,8 +319,7 @@ def test_a_balloon_over_its_pressure_maximum_stops_with_the_reason_and_its_state
     states = []
     programme = Programme((Phase("blow", {"c": 0.02}, first=0.2, largest=0.2, smallest=0.01),))
     with pytest.raises(NotConvergedError, match=r"stopped in phase 'blow' at 0\.\d+ of it, state \d+: .+increment"):
-        for state in march(balloon(), programme, Settings(viscosity=viscosity)):
-            states.append(state)  # a list comprehension would lose them
+        states.extend(march(balloon(), programme, Settings(viscosity=viscosity)))
     assert len(states) > 4
     assert 0.8 < states[-1].time < 1.0
     assert states[-1].pressure["c"] == pytest.approx(0.02 * states[-1].time)

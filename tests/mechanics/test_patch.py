@@ -1,5 +1,7 @@
 """Patch tests: an affine motion of the boundary moves the whole of a distorted mesh alike, with one exact stress."""
 
+from types import MappingProxyType
+
 import numpy as np
 import pytest
 
@@ -25,7 +27,7 @@ PLANE_SIDES = {"x": ("left", "right"), "y": ("bottom", "top")}
 class Affine(Model):
     """A model whose held nodes move as u = F X - X, with F - I growing with the target 'motion'."""
 
-    kinds = {"motion": "number"}
+    kinds = MappingProxyType({"motion": "number"})
     motion = None
 
     def prescribed(self, values):

@@ -4,7 +4,7 @@ Where Newton's method finds no state (a wall or web buckles locally), a viscous 
     c / 2 int |u - u_n|^2 dV,
 with u_n the displacement before: a row of such steps at fixed targets, with c falling to zero, slides the body to its
 next stable state. Only that state, in equilibrium without viscosity, is kept; what the slide dissipated is recorded.
-Sliding over the whole increment is tried before the increment is cut: cutting first only creeps up to the limit point.
+An increment no larger than the first of its phase slides before it is cut: cutting only creeps up to a limit point.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def march(
                 try:
                     found = newton.solve(_predict(past, time), values, Anchor(0.0, last.displacement))
                 except IncrementFailedError as failure:
-                    if not settings.viscosity:
+                    if not settings.viscosity or increment > phase.first:
                         raise
                     _log.info("phase %s at %.4f: %s; sliding viscously", phase.name, fraction, failure)
                     found, lost = _slide(newton, last, values, scale)
@@ -137,15 +137,22 @@ def _state(
     last: State, phase: str, time: float, found: Converged, values: dict[str, float], lost: float,
     planned: float, viscosity: float, newton: Newton,
 ) -> State:  # fmt: skip
-    """Return the new state, its energies integrated from the last by the trapezoidal rule."""
+    """Return the new state, its energies integrated from the last by the trapezoidal rule.
+
+    A viscous slide goes at the new targets all the way: then what is driven works with its new value.
+    """
     model, trial = last.model, found.trial
     names = list(model.surfaces)
     pressure = dict(zip(names, map(float, trial.pressure), strict=True))
     volume = dict(zip(names, map(float, found.volume), strict=True))
-    supply = sum(0.5 * (pressure[n] + last.pressure[n]) * (volume[n] - last.volume[n]) for n in names)
+    share = {n: 1.0 if lost and model.surfaces[n].cavity.supply.sets_pressure else 0.5 for n in names}
+    supply = sum(
+        (share[n] * pressure[n] + (1.0 - share[n]) * last.pressure[n]) * (volume[n] - last.volume[n]) for n in names
+    )
+    new = 1.0 if lost else 0.5
     moved = (trial.displacement - last.displacement).ravel()
     load = sum(
-        0.5 * (values.get(name, 0.0) + last.values.get(name, 0.0)) * float(pattern @ moved)
+        (new * values.get(name, 0.0) + (1.0 - new) * last.values.get(name, 0.0)) * float(pattern @ moved)
         for name, pattern in model.load_patterns.items()
     )
     held = model.held

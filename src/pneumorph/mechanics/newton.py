@@ -168,9 +168,10 @@ class Newton:
     def _error(self, residual: Array, applied: Array, equations: Array, volumes: Array, move: Array) -> float:
         """Return the largest of the relative errors in force, supplies and given displacements."""
         size = np.linalg.norm
-        scale = max(size(applied[self._free]), size(residual[self._held]))
-        force = float(size(residual[self._free]) / scale) if scale > 0.0 else 0.0
         shear = max(material.shear_modulus for material in self.model.materials.values())
+        least = 1e-6 * shear * self.model.mesh.size**2  # on a way back to zero no force is left to compare with
+        scale = max(float(size(applied[self._free])), float(size(residual[self._held])), least)
+        force = float(size(residual[self._free]) / scale)
         supplies = np.abs(equations[:, 0]) / (np.abs(equations[:, 1]) * shear + np.abs(equations[:, 2]) * volumes)
         return max(force, supplies.max(initial=0.0), np.abs(move).max(initial=0.0) / self.model.mesh.size)
 

@@ -111,8 +111,8 @@ def _phases(file: StudyFile) -> tuple[PhaseSection, ...]:
     ]
     if file.gravity is not None and not any(GRAVITY in phase.targets for phase in phases):
         targets = {GRAVITY: write(file.gravity.acceleration, "acceleration")}
-        # in one go where that converges: forces of a small part of the weight drown in the rounding of the stresses
-        phases.insert(0, PhaseSection(name=GRAVITY, targets=targets, first_increment=1.0, largest_increment=1.0))
+        # slender fingers sag far before any pressure stiffens them
+        phases.insert(0, PhaseSection(name=GRAVITY, targets=targets, first_increment=0.1, largest_increment=0.5))
     return tuple(phases)
 
 
