@@ -74,7 +74,11 @@ def write_input(
     lines += [", ".join(map(str, (i, *(n + 1 for n in cell)))) for i, cell in enumerate(cells.tolist(), 1)]
     lines += ["*NSET, NSET=CLAMP", *_rows(clamp), "*NSET, NSET=TIP", *_rows(tip)]
     c10, c20, c30 = yeoh
-    lines += ["*MATERIAL, NAME=RUBBER", "*HYPERELASTIC, YEOH", f"{c10}, {c20}, {c30}, {2.0 / bulk!r}, {UNUSED}, {UNUSED}"]
+    lines += [
+        "*MATERIAL, NAME=RUBBER",
+        "*HYPERELASTIC, YEOH",
+        f"{c10}, {c20}, {c30}, {2.0 / bulk!r}, {UNUSED}, {UNUSED}",
+    ]
     lines += ["*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER", "*BOUNDARY", "CLAMP, 1, 3"]
     lines += ["*STEP, NLGEOM, INC=10000", "*STATIC", f"{first}, 1., 1.e-6", "*DLOAD"]
     lines += [f"{cell}, P{face}, {pressure!r}" for cell, face in _element_faces(cells, pressed)]

@@ -20,7 +20,7 @@ LOCAL_BULK = 20.0
 
 def split_bulk(material: Material) -> tuple[float, float]:
     """Return (K - k, k), MPa: the bulk moduli of the pressure modes and of the points."""
-    local = min(LOCAL_BULK * material.shear_modulus, 0.5 * material.bulk_modulus)
+    local = min(LOCAL_BULK * material.shear_modulus, 0.95 * material.bulk_modulus)
     return material.bulk_modulus - local, local
 
 
