@@ -30,7 +30,7 @@ import calculix
 import measured
 
 WORKER = Path(__file__).resolve().with_name("inflation_worker.py")
-# issue's targets: at least, under, under (us), under (share)
+# what we aim at: at least, under, under (us), under (share)
 TARGETS = {"speed": 8.0, "difference": 1.5, "assembly": 12.0, "outside": 30.0}
 
 
