@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -116,7 +116,7 @@ def _rows(nodes: Iterable[int]) -> list[str]:
     return [", ".join(numbers[i : i + 12]) for i in range(0, len(numbers), 12)]
 
 
-def _element_faces(cells: Any, pressed: Sequence[Sequence[int]] | Any) -> list[tuple[int, int]]:
+def _element_faces(cells: Any, pressed: Any) -> list[tuple[int, int]]:
     """Return (element, face), both from 1, of faces given by their corners."""
     owner = {
         tuple(sorted(cell[i] for i in corners)): (number, face)

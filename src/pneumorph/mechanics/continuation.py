@@ -76,7 +76,7 @@ def march(
                 )
         if found.iterations <= settings.few and increment >= 0.999 * planned:
             planned = min(settings.growth * increment, phase.largest)
-        state = _state(last, phase.name, time, found, values, lost, planned, 0.0, newton)
+        state = _state(last, phase.name, time, found, values, lost, planned)
         past = [*past[-2:], state]
         yield state
 
@@ -135,7 +135,7 @@ def _lagrange(times: Sequence[float], time: float) -> list[float]:
 
 def _state(
     last: State, phase: str, time: float, found: Converged, values: dict[str, float], lost: float,
-    planned: float, viscosity: float, newton: Newton,
+    planned: float,
 ) -> State:  # fmt: skip
     """Return the new state, its energies integrated from the last by the trapezoidal rule.
 
@@ -162,5 +162,5 @@ def _state(
     energies = Energies(strain, old.supply + supply, old.load + load, old.viscous + lost)
     return State(
         model, last.index + 1, phase, time, trial.displacement, trial.modes, pressure, volume, values, found.reactions,
-        energies, found.iterations, found.unstable_modes, found.smallest_volume_ratio, planned, viscosity,
+        energies, found.iterations, found.unstable_modes, found.smallest_volume_ratio, planned,
     )  # fmt: skip

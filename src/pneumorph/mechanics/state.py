@@ -41,7 +41,7 @@ class State:
     reactions (nodes * d,): internal minus applied forces, N: what the supports give; zero elsewhere.
     iterations: Newton iterations it took; unstable_modes: eigenmodes in which it is unstable at fixed targets
     (None where the linear solver cannot tell); smallest_volume_ratio: smallest det F.
-    next_increment, viscosity: what the load stepping tries next, a fraction of the phase and a regularisation.
+    next_increment: what the load stepping tries next, as a fraction of the phase.
     """
 
     model: Model
@@ -59,7 +59,6 @@ class State:
     unstable_modes: int | None = 0
     smallest_volume_ratio: float = 1.0
     next_increment: float = 0.0
-    viscosity: float = 0.0
 
     @property
     def positions(self) -> Array:
