@@ -52,7 +52,7 @@ class Pardiso:
         settings = {
             1: 1,  # the values below, not the defaults
             2: 3 if thread_count() > 1 else 2,  # nested dissection, threaded
-            8: 2,  # at most two refinement steps
+            8: 0,  # refine only where pivots were perturbed: Newton corrects the rest
             10: 8,  # perturb pivots below 1e-8
             11: 0,
             13: 0,
