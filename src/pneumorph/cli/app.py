@@ -10,11 +10,9 @@ from typer.core import TyperGroup
 
 import pneumorph
 from pneumorph.cli import doctor, report, reproduce, run
-from pneumorph.cli.output import complain
-from pneumorph.errors import EngineError, InputError, PneumorphError, StorageError
+from pneumorph.cli.output import BAD_INPUT, DONE, FAILED, INTERRUPTED, complain
+from pneumorph.errors import InputError, PneumorphError, StorageError
 from pneumorph.threads import thread_count
-
-DONE, FAILED, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 
 
 class _Commands(TyperGroup):
@@ -27,7 +25,7 @@ class _Commands(TyperGroup):
         except (InputError, StorageError) as error:
             complain(f"error: {error}")
             raise typer.Exit(BAD_INPUT) from None
-        except (EngineError, PneumorphError) as error:
+        except PneumorphError as error:
             complain(f"error: {error}")
             raise typer.Exit(FAILED) from None
         except KeyboardInterrupt:

@@ -6,6 +6,9 @@ import sys
 
 from rich.console import Console
 
+# exit codes of every command
+DONE, FAILED, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
+
 
 def console() -> Console:
     """Return a console on the present stdout; plain text where that is no terminal."""

@@ -7,12 +7,10 @@ from pathlib import Path
 
 import typer
 
-from pneumorph.cli.output import complain, console
+from pneumorph.cli.output import INTERRUPTED, STOPPED, complain, console
 from pneumorph.cli.progress import progress_on
 from pneumorph.solution import Solution, Status
 from pneumorph.studies import Study, run_study
-
-STOPPED, INTERRUPTED = 3, 130
 
 
 def solve_and_report(

@@ -34,8 +34,7 @@ class CellTable:
     """Tabulated element: q points, n nodes, d reference directions, k pressure modes.
 
     shape (q, n), gradient (q, n, d) with respect to reference coordinates, weight (q,), modes (q, k);
-    check_shape and check_gradient: the same at the points of a finer rule, where the sign of det F is tested
-    before a state is accepted.
+    check_shape and check_gradient: the same at the points of a finer rule, for the smallest det F of a state.
     """
 
     kind: str
@@ -61,7 +60,7 @@ def tabulate(kind: str, points: Array) -> tuple[Array, Array]:
 
 
 @cache
-def cell_table(kind: str, pressure: str = "linear") -> CellTable:
+def cell_table(kind: str, pressure: str = "constant") -> CellTable:
     """Return the table of a cell; `pressure` modes are 'linear' and discontinuous, or 'constant' in each cell."""
     points, weight = _rule(kind)
     shape, gradient = tabulate(kind, points)
