@@ -1,25 +1,23 @@
 """What every material gives the solver: isochoric energy, stress and tangent, bulk modulus, density.
 
 The solver splits the stored energy into W(C), which does not feel a change of volume, and a volumetric part of its own
-that needs the bulk modulus alone. A law in the invariants is a frozen dataclass under `InvariantMaterial` with one
-vectorised method, `derivatives`. A law in the principal stretches (Ogden) belongs under a second base beside it, which
-gives `energy`, `stress_and_tangent` and `stretch_derivatives` through an eigen-decomposition that is safe for equal
-stretches; nothing else in the package needs to know which of the two a material is.
+that needs the bulk modulus alone. A law is a frozen dataclass with one vectorised method, `derivatives`, under one of
+two bases: `InvariantMaterial` for a law in the isochoric invariants, `StretchMaterial` for one in the isochoric
+principal stretches. Nothing else in the package needs to know which of the two a material is.
 """
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields
-from numbers import Real
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pneumorph.errors import InputError
-from pneumorph.materials import isochoric
+from pneumorph.materials import tension
+from pneumorph.materials.constants import as_numbers, check_finite
+from pneumorph.materials.prony import Prony
 from pneumorph.units import show
 
 Array = NDArray[np.float64]
@@ -28,23 +26,14 @@ Array = NDArray[np.float64]
 INCOMPRESSIBLE_RATIO = 1000.0
 
 
-class InvariantEnergy(NamedTuple):
-    """W(Ī1, Ī2) in MPa and its derivatives at n points: each an array (n,) or one number for all points."""
-
-    w: Array | float
-    w1: Array | float
-    w2: Array | float = 0.0
-    w11: Array | float = 0.0
-    w12: Array | float = 0.0
-    w22: Array | float = 0.0
-
-
 @dataclass(frozen=True)
 class Material(ABC):
-    """A hyperelastic solid, nearly incompressible.
+    """A hyperelastic solid, nearly incompressible, viscous on request.
 
     bulk:    bulk modulus, MPa; None takes 1000 times the initial shear modulus.
     density: mass density, tonne/mm³; None where it is not known, then the material bears no gravity or inertia.
+    prony:   relaxation of the isochoric stress; None for a purely elastic solid. The constants of the law are the
+             long-term ones, so that states at rest do not feel it.
 
     Raises InputError for a value that is not finite or not positive, and for a bulk modulus under 2/3 of the shear
     modulus (a negative Poisson's ratio).
@@ -52,12 +41,19 @@ class Material(ABC):
 
     bulk: float | None = field(default=None, kw_only=True, metadata={"kind": "stress"})
     density: float | None = field(default=None, kw_only=True, metadata={"kind": "density"})
+    prony: Prony | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         for item in fields(self):
-            value = getattr(self, item.name)
-            if value is not None or item.default is not None:
-                self._check_finite(item.name, value, item.metadata["kind"])
+            value, kind = getattr(self, item.name), item.metadata.get("kind")
+            if kind is None or (value is None and item.default is None):
+                continue
+            if item.metadata.get("many"):
+                object.__setattr__(self, item.name, as_numbers(type(self).__name__, item.name, value, kind))
+            else:
+                check_finite(type(self).__name__, item.name, value, kind)
+        if not (self.prony is None or isinstance(self.prony, Prony)):
+            raise InputError(f"{type(self).__name__}: prony = {self.prony!r}, allowed: a Prony or None")
         self._check_positive("density")
         self._check_law()
         least = 2.0 / 3.0 * self.shear_modulus
@@ -71,15 +67,15 @@ class Material(ABC):
     def _check_law(self) -> None:
         """Raise InputError for constants of the law that are not allowed."""
 
-    def _check_finite(self, name: str, value: object, kind: str) -> None:
-        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
-            raise InputError(f"{type(self).__name__}: {name} = {value!r}, allowed: a finite {kind}")
-
     def _check_positive(self, name: str) -> None:
         value = getattr(self, name)
         if value is not None and value <= 0.0:
-            kind = next(item.metadata["kind"] for item in fields(self) if item.name == name)
-            raise InputError(f"{type(self).__name__}: {name} = {show(value, kind)}, allowed: more than 0")
+            self._refuse(name, value, "more than 0")
+
+    def _refuse(self, name: str, value: float, allowed: str) -> None:
+        """Raise the InputError of a constant; `name` is that of its field."""
+        kind = next(item.metadata["kind"] for item in fields(self) if item.name == name)
+        raise InputError(f"{type(self).__name__}: {name} = {show(value, kind)}, allowed: {allowed}")
 
     @property
     @abstractmethod
@@ -102,7 +98,7 @@ class Material(ABC):
         """Return the isochoric energy density (n,), MPa, at right Cauchy-Green tensors `c` (n, 6).
 
         `c` holds tensor components in the order 11, 22, 33, 23, 13, 12; its determinant J² need not be 1, but must be
-        positive: nan comes back where it is not.
+        positive: nan comes back where it is not, and where a law that locks has no state.
         """
 
     @abstractmethod
@@ -111,8 +107,8 @@ class Material(ABC):
 
         S and `c` hold tensor components in the order 11, 22, 33, 23, 13, 12. CC holds the upper triangle, row by row,
         of the symmetric 6 x 6 table over the same pairs, tensor components again: CC_IJKL = 2 dS_IJ/dC_KL with no
-        factor 2 on shears. nan comes back where det C is not positive. `out` takes the two C-contiguous arrays to
-        write into. Safe to call from several threads at once.
+        factor 2 on shears. nan comes back where det C is not positive, and where a law that locks has no state. `out`
+        takes the two C-contiguous arrays to write into. Safe to call from several threads at once.
         """
 
     @abstractmethod
@@ -124,80 +120,24 @@ class Material(ABC):
 
     def uniaxial_tension(self, stretch: ArrayLike) -> Array:
         """Return the nominal stress, MPa, of an incompressible bar at axial stretches of any shape, each positive."""
-        first = _stretch(stretch)
-        side = first**-0.5
-        return self._nominal(first, side, side)
+        return self._nominal("uniaxial", stretch)
 
     def equibiaxial_tension(self, stretch: ArrayLike) -> Array:
         """Return the nominal stress, MPa, of an incompressible sheet stretched alike in both directions."""
-        first = _stretch(stretch)
-        return self._nominal(first, first, first**-2)
+        return self._nominal("equibiaxial", stretch)
 
     def planar_tension(self, stretch: ArrayLike) -> Array:
         """Return the nominal stress, MPa, along the pull of an incompressible wide strip (pure shear)."""
-        first = _stretch(stretch)
-        return self._nominal(first, np.ones_like(first), 1.0 / first)
+        return self._nominal("planar", stretch)
 
-    def _nominal(self, first: Array, second: Array, third: Array) -> Array:
+    def _nominal(self, mode: str, stretch: ArrayLike) -> Array:
         """Return the first principal nominal stress where the third principal stress is zero."""
-        slope = self.stretch_derivatives(np.stack([first, second, third], axis=-1))
-        return slope[..., 0] - slope[..., 2] * third / first
+        stretches = tension.principal_stretches(mode, stretch)
+        slope = self.stretch_derivatives(stretches)
+        return slope[..., 0] - slope[..., 2] * stretches[..., 2] / stretches[..., 0]
 
 
-class InvariantMaterial(Material):
-    """A law W(Ī1, Ī2): one method, `derivatives`, gives all of it."""
-
-    @abstractmethod
-    def derivatives(self, i1: Array, i2: Array) -> InvariantEnergy:
-        """Return W and its first and second derivatives at isochoric invariants `i1` and `i2` of one shape.
-
-        Ī1 = J^(-2/3) tr C and Ī2 = J^(-4/3) ((tr C)² - tr C²)/2; both are 3 in the reference.
-        """
-
-    @property
-    def shear_modulus(self) -> float:
-        """Initial shear modulus, MPa: 2 (W1 + W2) at Ī1 = Ī2 = 3."""
-        three = np.full(1, 3.0)
-        slopes = self.derivatives(three, three)
-        return float(np.ravel(2.0 * (np.asarray(slopes.w1) + np.asarray(slopes.w2)))[0])
-
-    def energy(self, c: Array) -> Array:
-        """Return the isochoric energy density (n,), see `Material.energy`."""
-        c = _voigt(c)
-        basis = np.empty((3, len(c)))
-        isochoric.invariants(c, basis)
-        result = np.empty(len(c))
-        result[:] = self.derivatives(basis[0], basis[1]).w
-        return result
-
-    def stress_and_tangent(self, c: Array, out: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
-        """Return S (n, 6) and CC (n, 21), see `Material.stress_and_tangent`."""
-        c = _voigt(c)
-        stress, tangent = (np.empty((len(c), 6)), np.empty((len(c), 21))) if out is None else out
-        if stress.shape != (len(c), 6) or tangent.shape != (len(c), 21):
-            raise InputError(
-                f"out has shapes {stress.shape} and {tangent.shape}: expected ({len(c)}, 6), ({len(c)}, 21)"
-            )
-        basis = np.empty((3, len(c)))
-        isochoric.invariants(c, basis)
-        slopes = np.empty((5, len(c)))
-        for row, slope in zip(slopes, self.derivatives(basis[0], basis[1])[1:], strict=True):
-            row[:] = slope
-        isochoric.stress_and_tangent(c, basis[2], slopes, stress, tangent)
-        return stress, tangent
-
-    def stretch_derivatives(self, stretches: ArrayLike) -> Array:
-        """Return dW/dλa = 2 λa (W1 + (I1 - λa²) W2), see `Material.stretch_derivatives`."""
-        stretches = np.asarray(stretches, dtype=float)
-        squares = stretches**2
-        i1 = squares.sum(axis=-1)
-        i2 = squares[..., 0] * squares[..., 1] + squares[..., 1] * squares[..., 2] + squares[..., 2] * squares[..., 0]
-        slopes = self.derivatives(i1, i2)
-        w1, w2 = (np.asarray(slope)[..., np.newaxis] for slope in (slopes.w1, slopes.w2))
-        return 2.0 * stretches * (w1 + (i1[..., np.newaxis] - squares) * w2)
-
-
-def _voigt(c: Array) -> Array:
+def voigt(c: Array) -> Array:
     """Return `c` as contiguous float64 (n, 6), the one signature that the kernels are compiled for."""
     c = np.ascontiguousarray(c, dtype=np.float64)
     if c.ndim != 2 or c.shape[1] != 6:
@@ -205,8 +145,9 @@ def _voigt(c: Array) -> Array:
     return c
 
 
-def _stretch(stretch: ArrayLike) -> Array:
-    values = np.asarray(stretch, dtype=np.float64)
-    if not (np.isfinite(values) & (values > 0.0)).all():
-        raise InputError(f"stretch = {stretch!r}, allowed: finite and more than 0")
-    return values
+def outputs(count: int, out: tuple[Array, Array] | None) -> tuple[Array, Array]:
+    """Return the arrays (n, 6) and (n, 21) to write into: those given, if their shapes are right, or new ones."""
+    stress, tangent = (np.empty((count, 6)), np.empty((count, 21))) if out is None else out
+    if stress.shape != (count, 6) or tangent.shape != (count, 21):
+        raise InputError(f"out has shapes {stress.shape} and {tangent.shape}: expected ({count}, 6), ({count}, 21)")
+    return stress, tangent

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pneumorph.materials.material import Array, InvariantEnergy, InvariantMaterial
+from pneumorph.materials.invariant import InvariantEnergy, InvariantMaterial
+from pneumorph.materials.material import Array
 
 
 @dataclass(frozen=True)
