@@ -1,4 +1,4 @@
-"""CalculiX for the benchmarks: write a model of 10-node tetrahedra, run it, read what it says.
+"""CalculiX for the benchmarks: find it, limit its threads, read what it says. `pneumorph.exchange` writes its input.
 
 Standard library only, so that the process that measures stays small (see `measured.py`).
 """
@@ -7,15 +7,10 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 PACKAGE = "calculix-ccx"
-# corners (from 0) of the faces P1..P4 of C3D10; its nodes are numbered like VTK's quadratic tetrahedron
-FACES = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
-UNUSED = "1.e20"
 VARIABLES = (
     "OMP_NUM_THREADS", "NUMBER_OF_CPUS", "CCX_NPROC_EQUATION_SOLVER", "CCX_NPROC_RESULTS", "CCX_NPROC_STIFFNESS",
 )  # fmt: skip
@@ -48,44 +43,6 @@ def environment(threads: int) -> dict[str, str]:
     return dict.fromkeys(VARIABLES, str(threads))
 
 
-def write_input(
-    path: Path,
-    points: Any,
-    cells: Any,
-    *,
-    clamp: Iterable[int],
-    tip: Iterable[int],
-    pressed: Any,
-    yeoh: tuple[float, float, float],
-    bulk: float,
-    pressure: float,
-    first: float,
-) -> None:
-    """Write a clamped Yeoh body under a pressure that follows the surface.
-
-    points (n, 3) in mm and cells (m, 10): arrays; clamp, tip: nodes; pressed (k, 3 or more): corners of the faces
-    under pressure; yeoh: C10, C20, C30 in MPa; bulk, pressure: MPa; first: first increment of the step of length 1.
-    CalculiX's volumetric energy is the sum of (J - 1)^2i / Di, so that D1 = 2 / bulk. A D2 or D3 of zero it replaces by
-    a default; `UNUSED` switches these terms off.
-    """
-    lines = ["*NODE, NSET=ALL"]
-    lines += [f"{i}, {x:.12g}, {y:.12g}, {z:.12g}" for i, (x, y, z) in enumerate(points.tolist(), 1)]
-    lines.append("*ELEMENT, TYPE=C3D10, ELSET=BODY")
-    lines += [", ".join(map(str, (i, *(n + 1 for n in cell)))) for i, cell in enumerate(cells.tolist(), 1)]
-    lines += ["*NSET, NSET=CLAMP", *_rows(clamp), "*NSET, NSET=TIP", *_rows(tip)]
-    c10, c20, c30 = yeoh
-    lines += [
-        "*MATERIAL, NAME=RUBBER",
-        "*HYPERELASTIC, YEOH",
-        f"{c10}, {c20}, {c30}, {2.0 / bulk!r}, {UNUSED}, {UNUSED}",
-    ]
-    lines += ["*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER", "*BOUNDARY", "CLAMP, 1, 3"]
-    lines += ["*STEP, NLGEOM, INC=10000", "*STATIC", f"{first}, 1., 1.e-6", "*DLOAD"]
-    lines += [f"{cell}, P{face}, {pressure!r}" for cell, face in _element_faces(cells, pressed)]
-    lines += ["*NODE PRINT, NSET=TIP, FREQUENCY=10000", "U", "*END STEP", ""]
-    path.write_text("\n".join(lines))
-
-
 def progress(job: Path) -> Progress:
     """Return how far a run came, from its .sta (converged increments) and .cvg (all iterations)."""
     rows = [line.split() for line in job.with_suffix(".sta").read_text().splitlines()]
@@ -109,19 +66,3 @@ def mean_displacement(job: Path) -> tuple[float, float, float]:
         raise CalculixError(f"{job.with_suffix('.dat')}: no displacements in it")
     x, y, z = (math.fsum(column) / len(column) for column in zip(*blocks[-1], strict=True))
     return x, y, z
-
-
-def _rows(nodes: Iterable[int]) -> list[str]:
-    numbers = [str(int(n) + 1) for n in nodes]
-    return [", ".join(numbers[i : i + 12]) for i in range(0, len(numbers), 12)]
-
-
-def _element_faces(cells: Any, pressed: Any) -> list[tuple[int, int]]:
-    """Return (element, face), both from 1, of faces given by their corners."""
-    owner = {
-        tuple(sorted(cell[i] for i in corners)): (number, face)
-        for number, cell in enumerate(cells.tolist(), 1)
-        for face, corners in enumerate(FACES, 1)
-    }
-    # a face of the boundary belongs to one cell, so that no entry above overwrites another that is asked for
-    return [owner[tuple(sorted(face[:3]))] for face in pressed.tolist()]

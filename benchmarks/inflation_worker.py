@@ -16,10 +16,10 @@ from collections.abc import Callable  # noqa: E402
 from pathlib import Path  # noqa: E402
 from typing import Any  # noqa: E402
 
-import calculix  # noqa: E402
 import numpy as np  # noqa: E402
 
 import pneumorph  # noqa: E402, F401  (first: it limits the threads of the numerical libraries)
+from pneumorph.exchange import write_inp  # noqa: E402
 from pneumorph.materials import Yeoh  # noqa: E402
 from pneumorph.mechanics import Cavity, Clamp, Model, Phase, Programme, linear, march  # noqa: E402
 from pneumorph.mesh.mesh import CellBlock, FaceBlock, Mesh  # noqa: E402
@@ -48,11 +48,9 @@ def make_mesh(folder: Path, case: Case) -> Case:
     cells = mesh.blocks[0].nodes
     arrays = {name: np.concatenate([b.nodes for b in mesh.face_blocks(name)]) for name in FACES}
     np.savez(folder / "mesh.npz", points=mesh.points, cells=cells, **arrays)
-    calculix.write_input(
-        folder / "inflation.inp", mesh.points, cells, clamp=mesh.face_nodes("clamp"), tip=mesh.face_nodes("tip"),
-        pressed=arrays["cavity"], yeoh=(case["c10"], case["c20"], 0.0), bulk=case["bulk"],
-        pressure=case["pressure"], first=case["calculix_first"],
-    )  # fmt: skip
+    phase = Phase("inflation", {"cavity": case["pressure"]}, first=case["calculix_first"], largest=1.0, smallest=1e-6)
+    model, programme = _model(folder, case), Programme((phase,))
+    write_inp(folder / "inflation.inp", model, programme, title="benchmark", fields=False, printed=("tip",))
     return {
         "actuator": repr(actuator),
         "size": size,
@@ -100,7 +98,7 @@ def solve(folder: Path, case: Case) -> Case:
         "substitute": times["solve"],
         "increments": increments,
         "iterations": converged,
-        "failed_iterations": calls["factorise"] - converged,
+        "factorisations": calls["factorise"],
         "pressure": last.pressure["cavity"],
         "tip": tip.tolist(),
         "smallest_volume_ratio": last.smallest_volume_ratio,

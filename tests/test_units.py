@@ -31,6 +31,11 @@ from pneumorph.errors import InputError, UnitError
         ("9.81 m/s²", "acceleration", 9810.0),
         ("10 1/m", "curvature", 0.01),
         ("2 ms", "time", 0.002),
+        ("12 mg", "mass", 1.2e-8),
+        ("20 degC", "temperature", 293.15),
+        ("1e-8 m3/(s Pa)", "conductance", 1e7),
+        ("6 L/(min bar)", "conductance", 1e6),
+        ("287.05 J/(kg K)", "gas constant", 287.05e6),
         ("1 J", "energy", 1000.0),
         ("3 cm2", "area", 300.0),
         (" 0.7 ", "number", 0.7),
@@ -58,6 +63,13 @@ def test_text_with_a_unit_becomes_an_inside_number(text, kind, value):
         ("1 mm; 2 mm", "length"),
         ("80 kPa extra", "pressure"),
         ("1/0 mm", "length"),
+        ("mm", "length"),
+        ("1 mm; 2", "length"),
+        ("1 m±2", "length"),
+        ("[1,2] mm", "length"),
+        ("9**9**9**9 mm", "length"),
+        ("1 mm**9**9**9", "length"),
+        ("1 " + "a " * 10_000 + "!", "length"),
         ("__import__('os') mm", "length"),
         (80, "pressure"),
         (None, "pressure"),
@@ -72,6 +84,13 @@ def test_text_without_the_right_unit_is_refused_by_its_name(text, kind):
     assert "expected" in message
     if units.printed_unit(kind) and "finite" not in message:
         assert units.printed_unit(kind) in message
+
+
+def test_a_long_text_is_cut_in_the_message_and_stays_on_one_line():
+    with pytest.raises(UnitError) as caught:
+        units.parse("1 mm\n\n" + "x" * 10_000, "length")
+    assert len(str(caught.value)) < 300
+    assert "\n" not in str(caught.value)
 
 
 @given(st.text(max_size=12))
@@ -99,6 +118,8 @@ def test_an_unknown_kind_of_quantity_is_refused_with_the_nearest(call):
         (9810.0, "acceleration", "9.81 m/s²"),
         (12.0, "moment", "12 N·mm"),
         (0.7, "number", "0.7"),
+        (1.2e-8, "mass", "12 mg"),
+        (1e6, "conductance", "6 L/(min·bar)"),
     ],
 )
 def test_inside_numbers_are_printed_with_their_unit(value, kind, text):

@@ -7,7 +7,13 @@ from functools import cache
 
 import pint
 
-from pneumorph.errors import UnitError, unknown_name
+from pneumorph.errors import UnitError, quoted, shortened, unknown_name
+
+# one number, then units: pint alone would also take "1 mm; 2" as 2 mm, "1 m±2" as 2 m, "mm" as 1 mm, and would
+# compute towers of powers. Quantifiers that give nothing back (++) keep the time linear.
+_NUMBER = r"[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][-+]?[0-9]++)?+"
+_UNIT = r"(?:[^\W\d]\w*+|[°%])(?:\s*+(?:\*\*|\^)\s*+[-+]?[0-9]{1,2}(?![0-9.]))?+"
+_QUANTITY = re.compile(rf"{_NUMBER}(?:\s*+(?:[*/]\s*+)?+(?:1\s*+/\s*+)?+(?:\(\s*+)?+{_UNIT}(?:\s*+\))?+)*+")
 
 # kind of quantity -> (unit used inside, unit used when printed)
 KINDS: dict[str, tuple[str, str]] = {
@@ -24,13 +30,17 @@ KINDS: dict[str, tuple[str, str]] = {
     "acceleration": ("mm/s**2", "m/s²"),
     "energy": ("mJ", "mJ"),
     "time": ("s", "s"),
+    "mass": ("tonne", "mg"),
+    "temperature": ("K", "K"),
+    "conductance": ("mm**3/(s*MPa)", "L/(min·bar)"),
+    "gas constant": ("mm**2/(s**2*K)", "J/(kg·K)"),
     "number": ("", ""),
 }
 
 
 @cache
 def _registry() -> pint.UnitRegistry:
-    return pint.UnitRegistry()
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)  # reads "20 degC"
 
 
 @cache
@@ -69,17 +79,20 @@ def parse(text: str, kind: str, name: str = "value") -> float:
     inside, printed = _kind(kind)
     example = f"{kind} with its unit, such as '1 {printed}'" if printed else "a plain number"
     if not isinstance(text, str):
-        raise UnitError(f"{name} = {text!r}: expected {example}")
+        raise UnitError(f"{name} = {shortened(repr(text))}: expected {example}")
+    plain = re.sub(r"([A-Za-z])([23])\b", r"\1**\2", _plain(text.strip()))
+    if not _QUANTITY.fullmatch(plain):
+        raise UnitError(f"{name} = {quoted(text)}: expected {example}")
     try:
-        quantity: pint.Quantity = _registry().Quantity(re.sub(r"([A-Za-z])([23])\b", r"\1**\2", _plain(text.strip())))
+        quantity: pint.Quantity = _registry().Quantity(plain)
         value = float(quantity.to(inside or "dimensionless").magnitude)
     except (pint.PintError, TypeError, ValueError, AttributeError, AssertionError, ArithmeticError) as error:
-        reason = f" ({error})" if isinstance(error, pint.PintError) else ""
-        raise UnitError(f"{name} = '{text}': expected {example}{reason}") from None
+        reason = f" ({shortened(str(error), 100)})" if isinstance(error, pint.PintError) else ""
+        raise UnitError(f"{name} = {quoted(text)}: expected {example}{reason}") from None
     except Exception as error:  # pint's tokenizer raises its own parser errors on odd text
-        raise UnitError(f"{name} = '{text}': expected {example}") from error
+        raise UnitError(f"{name} = {quoted(text)}: expected {example}") from error
     if value != value or value in (float("inf"), float("-inf")):
-        raise UnitError(f"{name} = '{text}': expected a finite {kind}")
+        raise UnitError(f"{name} = {quoted(text)}: expected a finite {kind}")
     return float(f"{value:.15g}")
 
 

@@ -21,7 +21,8 @@ from pneumorph.mechanics import (
     march,
 )  # fmt: skip
 from pneumorph.mechanics.fields import to_nodes
-from pneumorph.mechanics.newton import Anchor, IncrementFailedError, Newton, Trial
+from pneumorph.mechanics.newton import Increment, IncrementFailedError, Newton, Trial
+from pneumorph.mechanics.state import rest
 from pneumorph.mesh.mesh import CellBlock, Mesh
 from pneumorph.mesh.structured import box, rectangle
 from pneumorph.threads import thread_count
@@ -216,7 +217,7 @@ def test_a_load_that_nothing_drives_is_refused():
 
 def attempt(model, displacement, **settings):
     trial = Trial(displacement, model.body.zero_pressure(), np.zeros(0))
-    return Newton(model, Settings(**settings)).solve(trial, {"pull": 0.1}, Anchor(0.0, displacement))
+    return Newton(model, Settings(**settings)).solve(trial, {"pull": 0.1}, Increment(rest(model)))
 
 
 def test_an_increment_that_fails_says_why():

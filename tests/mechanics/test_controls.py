@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pneumorph.errors import NotConvergedError
+from pneumorph.errors import InputError, NotConvergedError
 from pneumorph.materials import NeoHookean, Yeoh
 from pneumorph.mechanics import (
     Cavity,
@@ -21,7 +21,8 @@ from pneumorph.mechanics import (
     VolumeSupply,
     march,
 )  # fmt: skip
-from pneumorph.mechanics.newton import Anchor, Newton, Trial
+from pneumorph.mechanics.newton import Increment, Newton, Trial
+from pneumorph.mechanics.state import rest
 from pneumorph.mesh.mesh import CellBlock, FaceBlock, Mesh
 from pneumorph.mesh.structured import box, rectangle
 from pneumorph.mesh.topology import boundary
@@ -308,7 +309,7 @@ def test_a_balloon_past_its_maximum_is_stable_at_fixed_volume_and_unstable_at_fi
     free = balloon()
     for state, expected in ((states[top - 2], 0), (states[top + 2], 1), (states[-1], 1)):
         trial = Trial(state.displacement, state.pressure_modes, np.array([state.pressure["c"]]))
-        found = Newton(free, Settings()).solve(trial, state.pressure, Anchor(0.0, state.displacement))
+        found = Newton(free, Settings()).solve(trial, state.pressure, Increment(state))
         assert found.trial.displacement == pytest.approx(state.displacement, abs=1e-5)
         assert state.unstable_modes == 0
         assert found.unstable_modes == expected
@@ -323,3 +324,30 @@ def test_a_balloon_over_its_pressure_maximum_stops_with_the_reason_and_its_state
     assert len(states) > 4
     assert 0.8 < states[-1].time < 1.0
     assert states[-1].pressure["c"] == pytest.approx(0.02 * states[-1].time)
+
+
+def test_near_the_solution_one_factorisation_serves_several_iterations(monkeypatch):
+    model = Model(hollow(), {"body": RUBBER}, (Clamp("x0"),), cavities=(Cavity("hole", ("hole",)),))
+    newton = Newton(model, Settings(tolerance=1e-12))
+    calls = []
+    factorise = newton.linear.factorise
+    monkeypatch.setattr(newton.linear, "factorise", lambda matrix: (calls.append(1), factorise(matrix)))
+    zero = np.zeros_like(model.mesh.points)
+    start = Trial(zero, model.body.zero_pressure(), np.zeros(1))
+    found = newton.solve(start, {"hole": 0.05}, Increment(rest(model)))
+    assert len(calls) < found.iterations
+    # the same state as full steps alone lead to
+    exact = newton.solve(found.trial, {"hole": 0.05}, Increment(rest(model)))
+    assert found.trial.displacement == pytest.approx(exact.trial.displacement, abs=1e-9)
+
+
+def test_the_clock_adds_up_the_durations_of_the_phases():
+    programme = Programme((
+        Phase("a", {"x": 1.0}, duration=2.0), Phase("b", {"x": 0.5}), Phase("c", {"x": 0.0}, duration=0.5),
+    ))  # fmt: skip
+    assert [programme.clock(t) for t in (0.0, 0.5, 1.0, 1.7, 2.0, 2.5, 3.0)] == [0.0, 1.0, 2.0, 2.0, 2.0, 2.25, 2.5]
+
+
+def test_a_duration_that_is_not_positive_is_refused():
+    with pytest.raises(InputError, match=r"phase 'a': duration = 0.0 s, allowed: more than 0"):
+        Phase("a", {"x": 1.0}, duration=0.0)

@@ -23,6 +23,7 @@ def test_every_public_material_support_load_and_supply_is_registered():
                 "State",
                 "Material",
                 "InvariantMaterial",
+                "StretchMaterial",
             ):
                 assert REGISTRY[name] is item
 

@@ -7,10 +7,21 @@ from pneumorph.mechanics.model import Model
 from pneumorph.mechanics.newton import Settings
 from pneumorph.mechanics.programme import Phase, Programme
 from pneumorph.mechanics.state import Energies, State
-from pneumorph.mechanics.supply import PressureSupply, Supply, VolumeSupply
+from pneumorph.mechanics.supplies import (
+    Atmosphere,
+    FlowSupply,
+    Gas,
+    GasSupply,
+    PressureSupply,
+    SealedSupply,
+    Supply,
+    Tube,
+    VolumeSupply,
+)
 from pneumorph.mechanics.supports import Clamp, Prescribed, Roller, Symmetry
 
 __all__ = [
-    "Cavity", "Clamp", "Energies", "Force", "Gravity", "Model", "Phase", "Prescribed", "PressureSupply", "Programme",
-    "Roller", "Settings", "State", "Supply", "Symmetry", "Traction", "VolumeSupply", "march",
+    "Atmosphere", "Cavity", "Clamp", "Energies", "FlowSupply", "Force", "Gas", "GasSupply", "Gravity", "Model", "Phase",
+    "Prescribed", "PressureSupply", "Programme", "Roller", "SealedSupply", "Settings", "State", "Supply", "Symmetry",
+    "Traction", "Tube", "VolumeSupply", "march",
 ]  # fmt: skip

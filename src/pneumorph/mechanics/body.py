@@ -58,7 +58,9 @@ class Body:
     def __init__(self, mesh: Mesh, materials: dict[str, Material], pressure: str = "constant"):
         self.mesh = mesh
         self.dimension = mesh.dimension
-        self.pattern = Pattern.of_cells(len(mesh.points), self.dimension, (b.nodes for b in mesh.blocks))
+        coupled = [block.nodes for block in mesh.blocks]
+        coupled += [cap.nodes for blocks in mesh.caps.values() for cap in blocks]  # they join nodes of no common cell
+        self.pattern = Pattern.of_cells(len(mesh.points), self.dimension, coupled)
         self.unknowns = mesh.points.size
         self.tables = [cell_table(block.kind, pressure) for block in mesh.blocks]
         self._materials = [materials[block.domain] for block in mesh.blocks]
@@ -84,8 +86,14 @@ class Body:
         pairs = zip(self.mesh.blocks, self.tables, strict=True)
         return [np.zeros((len(block.nodes), table.modes.shape[1])) for block, table in pairs]
 
-    def assemble(self, position: Array, pressure: list[Array], tangent: bool = True) -> Assembly:
-        """Return internal forces and, with `tangent`, the stiffness at deformed nodes (nodes, d)."""
+    def assemble(
+        self, position: Array, pressure: list[Array], tangent: bool = True, *, memory: list[Array] | None = None,
+        seconds: float = 0.0,
+    ) -> Assembly:  # fmt: skip
+        """Return internal forces and, with `tangent`, the stiffness at deformed nodes (nodes, d).
+
+        memory, seconds: what viscous materials remember (see `State`), and the time since; none: no time limits them.
+        """
         points = self.mesh.points
 
         def work(team: list[Piece]) -> Assembly:
@@ -94,6 +102,11 @@ class Body:
                 table = piece.table
                 c, _ = self._deformation(piece, position)
                 stress, moduli = piece.material.stress_and_tangent(c.reshape(-1, 6))
+                if memory and seconds > 0.0 and piece.material.prony is not None:
+                    old = memory[piece.block][:, piece.part].reshape(-1, len(stress), 6)
+                    step = piece.material.prony.step(seconds, old[1:], old[0], stress)
+                    stress = step.factor * stress + step.history
+                    moduli *= step.factor
                 count, modes, nodes = len(piece.cells), table.modes.shape[1], piece.cells.shape[1]
                 constant = np.zeros((count, modes) if tangent else (0, modes))
                 gain = np.zeros((count if tangent else 0, modes, self.dimension, nodes))
@@ -112,6 +125,43 @@ class Body:
             total.force += part.force
             total.values += part.values
             total.gains += part.gains
+        return total
+
+    def zero_memory(self) -> list[Array]:
+        """Return what the materials remember of the reference state: nothing, or overstresses of zero."""
+        result = []
+        for block, table, material in zip(self.mesh.blocks, self.tables, self._materials, strict=True):
+            terms = 0 if material.prony is None else len(material.prony.g) + 1
+            result.append(np.zeros((terms, len(block.nodes) if terms else 0, len(table.weight), 6)))
+        return result
+
+    def remember(self, position: Array, memory: list[Array], seconds: float) -> list[Array]:
+        """Return the memory after an increment that ends at deformed nodes; in no time all overstress is gone."""
+        result = [np.zeros_like(item) for item in memory]
+        for piece in (piece for team in self._teams for piece in team):
+            if piece.material.prony is None:
+                continue
+            c, _ = self._deformation(piece, position)
+            stress, _ = piece.material.stress_and_tangent(c.reshape(-1, 6))
+            new = result[piece.block][:, piece.part]
+            new[0] = stress.reshape(c.shape)
+            if seconds > 0.0:
+                old = memory[piece.block][:, piece.part].reshape(-1, len(stress), 6)
+                step = piece.material.prony.step(seconds, old[1:], old[0], stress)
+                new[1:] = step.overstress.reshape(-1, *c.shape)
+        return result
+
+    def overstress_work(self, positions: tuple[Array, Array], memories: tuple[list[Array], list[Array]]) -> float:
+        """Return the work of the overstresses from one state to the next, mJ, by the trapezoidal rule."""
+        total = 0.0
+        factors = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear stands twice in S : dC
+        for piece in (piece for team in self._teams for piece in team):
+            if piece.material.prony is None:
+                continue
+            before, after = (self._deformation(piece, position)[0] for position in positions)
+            stress = sum(memory[piece.block][1:, piece.part].sum(axis=0) for memory in memories)
+            volumes = cell_volumes(self.mesh, self.mesh.blocks[piece.block])[piece.part]
+            total += float(np.einsum("eqi,eqi,i,eq->", stress, after - before, factors, volumes)) / 4.0
         return total
 
     def pressure_step(self, gains: list[tuple[Array, Array]], step: Array) -> list[Array]:
@@ -161,12 +211,16 @@ class Body:
         return c, smallest
 
 
-def cell_volumes(mesh: Mesh, block: CellBlock) -> Array:
-    """Return the reference volume (cells, q) that each quadrature point of a block stands for, mm3."""
+def cell_volumes(mesh: Mesh, block: CellBlock, rule: tuple[Array, Array, Array] | None = None) -> Array:
+    """Return the reference volume (cells, q) that each quadrature point of a block stands for, mm3.
+
+    rule: shape, gradient and weight of other points than those of stress.
+    """
     table = cell_table(block.kind)
+    shape, gradient, weight = rule or (table.shape, table.gradient, table.weight)
     x = mesh.points[block.nodes]
-    jacobian = np.einsum("qmj,emi->eqij", table.gradient, x)
-    volume = np.linalg.det(jacobian) * table.weight
+    jacobian = np.einsum("qmj,emi->eqij", gradient, x)
+    volume = np.linalg.det(jacobian) * weight
     if mesh.space == "axisymmetric":
-        volume = volume * 2 * np.pi * np.einsum("qm,em->eq", table.shape, x[:, :, 0])
+        volume = volume * 2 * np.pi * np.einsum("qm,em->eq", shape, x[:, :, 0])
     return volume

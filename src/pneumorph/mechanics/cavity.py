@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from pneumorph.errors import InputError, LeakingCavityError
 from pneumorph.mechanics import kernels
 from pneumorph.mechanics.pattern import Pattern
-from pneumorph.mechanics.supply import PressureSupply, Supply
+from pneumorph.mechanics.supplies import PressureSupply, Supply
 from pneumorph.mechanics.surface import enclosed_volume
 from pneumorph.mesh.mesh import FaceBlock, Mesh
 
 Array = NDArray[np.float64]
 
-_CORNERS = {"triangle6": 3, "quad9": 4, "line3": 2}
+# a lens has two edges: the arc on the rim and its chord
+_CORNERS = {"triangle6": 3, "quad9": 4, "line3": 2, "triangle3": 3, "lens3": 2}
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,8 @@ class Cavity:
     """A space that gas or liquid fills.
 
     name:    how programmes, histories and reports call it.
-    faces:   names of the faces that bound it; they must close. Several closed shells may share one pressure.
+    faces:   names of the faces, and of the mesh's caps, that bound it; they must close. Several closed shells may
+             share one pressure.
     supply:  what fills it; default: a pressure that the programme sets.
     mirrors: names of plane faces (symmetry cuts of the model) in whose planes the cavity may lie open. Volume and
              supply are then those of the part that is modelled.
@@ -52,7 +54,9 @@ class CavitySurface:
         self.cavity = cavity
         self._mesh = mesh
         self._pattern = pattern
-        self.blocks: tuple[FaceBlock, ...] = tuple(b for name in cavity.faces for b in mesh.face_blocks(name))
+        self.blocks: tuple[FaceBlock, ...] = tuple(
+            b for name in cavity.faces for b in (mesh.caps.get(name) or mesh.face_blocks(name))
+        )
         self._slots = [pattern.slots(block.nodes) for block in self.blocks]
         self._origin, self._project, planes = self._field()
         self._check_closed(planes)
@@ -85,7 +89,7 @@ class CavitySurface:
         edges = []
         for block in self.blocks:
             count = _CORNERS[block.kind]
-            if count == 2:
+            if block.kind == "line3":
                 edges.append(np.column_stack([block.nodes[:, :2].ravel(), block.nodes[:, :2].ravel()]))
             else:
                 ends = [(i, (i + 1) % count) for i in range(count)]

@@ -5,6 +5,9 @@ Where Newton's method finds no state (a wall or web buckles locally), a viscous 
 with u_n the displacement before: a row of such steps at fixed targets, with c falling to zero, slides the body to its
 next stable state. Only that state, in equilibrium without viscosity, is kept; what the slide dissipated is recorded.
 An increment no larger than the first of its phase slides before it is cut: cutting only creeps up to a limit point.
+
+In a phase with inertia (see `dynamics`) nothing slides: the body moves, and increments are also held small enough for
+the accuracy of the time integration.
 """
 
 from __future__ import annotations
@@ -17,8 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumorph.errors import NotConvergedError
+from pneumorph.mechanics.dynamics import SCHEMES, Inertia, kinetic
+from pneumorph.mechanics.mass import Mass
 from pneumorph.mechanics.model import Model
-from pneumorph.mechanics.newton import Anchor, Converged, IncrementFailedError, Newton, Settings, Trial
+from pneumorph.mechanics.newton import Converged, Increment, IncrementFailedError, Newton, Settings, Trial
 from pneumorph.mechanics.programme import Programme
 from pneumorph.mechanics.state import Energies, State, rest
 
@@ -37,11 +42,11 @@ def march(
     programme.check(model)
     settings = settings or Settings()
     newton = Newton(model, settings)
+    mass = Mass(model) if any(phase.inertia for phase in programme.phases) else None
     past = list(start[-3:])
     if not past:
         past = [replace(rest(model), next_increment=programme.phases[0].first)]
         yield past[0]
-    scale = max(m.shear_modulus for m in model.materials.values()) / model.mesh.size**2
     while past[-1].time < len(programme.phases):
         last = past[-1]
         number = int(last.time)
@@ -55,15 +60,20 @@ def march(
                 increment = ends[0] - done
             fraction = ends[0] if increment == ends[0] - done else done + increment
             time = number + fraction
-            values, lost = programme.values(time), 0.0
+            values, lost, growth = programme.values(time), 0.0, settings.growth
+            seconds = programme.clock(time) - last.clock
+            inertia = Inertia(mass, SCHEMES[phase.inertia], last, seconds) if mass and phase.inertia else None
+            step = Increment(last, seconds, inertia)
             try:
                 try:
-                    found = newton.solve(_predict(past, time), values, Anchor(0.0, last.displacement))
+                    found = newton.solve(_predict(past, time), values, step)
                 except IncrementFailedError as failure:
-                    if not settings.viscosity or increment > phase.first:
+                    if not settings.viscosity or increment > phase.first or inertia:
                         raise
                     _log.info("phase %s at %.4f: %s; sliding viscously", phase.name, fraction, failure)
-                    found, lost = _slide(newton, last, values, scale)
+                    found, lost = _slide(newton, step, values)
+                moved = inertia.error(found.trial.displacement) if inertia else 0.0
+                growth = _growth(max(moved, 0.0 if lost else found.flow_error), growth)
                 break
             except IncrementFailedError as failure:
                 reason = str(failure)
@@ -74,35 +84,65 @@ def march(
                     f"stopped in phase '{phase.name}' at {done:.4f} of it, state {last.index}: {reason} "
                     f"with the smallest increment {phase.smallest:g}"
                 )
-        if found.iterations <= settings.few and increment >= 0.999 * planned:
-            planned = min(settings.growth * increment, phase.largest)
-        state = _state(last, phase.name, time, found, values, lost, planned)
+        if growth < 1.0 or (found.iterations <= settings.few and increment >= 0.999 * planned):
+            planned = min(growth * increment, phase.largest)
+        state = _state(step, phase.name, time, found, values, lost, planned)
         past = [*past[-2:], state]
         yield state
 
 
-def _slide(newton: Newton, last: State, values: dict[str, float], scale: float) -> tuple[Converged, float]:
+def _growth(error: float, most: float) -> float:
+    """Return the factor on the next increment that keeps the accuracy; raises IncrementFailedError where it is lost.
+
+    error: of the time integration in this increment, over what is allowed.
+    """
+    if error > 2.0:
+        raise IncrementFailedError(f"the time step misses its accuracy {error:.2g} times")
+    return min(most, max(0.5, 0.9 * error ** (-1.0 / 3.0))) if error else most
+
+
+class _Viscosity:
+    """The viscous term (a `Drag`): coefficient (MPa / mm2) and the displacement it starts from."""
+
+    def __init__(self, model: Model, coefficient: float, origin: Array):
+        self.coefficient, self.origin = coefficient, origin
+        self.diagonal = model.body.pattern.diagonal
+        self.weights = coefficient * np.repeat(model.unit_mass, model.body.dimension)
+
+    def force(self, displacement: Array) -> Array:
+        """Return the force (unknowns,), N."""
+        result: Array = self.weights * (displacement - self.origin).ravel()
+        return result
+
+    def add_tangent(self, values: Array) -> None:
+        """Add the derivative of the force to the tangent."""
+        values[self.diagonal] += self.weights
+
+
+def _slide(newton: Newton, step: Increment, values: dict[str, float]) -> tuple[Converged, float]:
     """Return the equilibrium that viscous sliding from the last state leads to, and the energy lost on the way, mJ."""
+    last, model = step.start, newton.model
     trial = Trial(last.displacement, last.pressure_modes, np.array([last.pressure[n] for n in last.pressure]))
+    scale = max(m.shear_modulus for m in model.materials.values()) / model.mesh.size**2
     coefficient, lost, count = newton.settings.viscosity * scale, 0.0, 0
-    size = newton.model.mesh.size
     for _ in range(newton.settings.relaxations):
+        drag = _Viscosity(model, coefficient, trial.displacement)
         try:
-            found = newton.solve(trial, values, Anchor(coefficient, trial.displacement), loose=True)
+            found = newton.solve(trial, values, replace(step, drag=drag), loose=True)
         except IncrementFailedError as failure:
             _log.debug("viscosity %.3g: %s", coefficient / scale, failure)
             coefficient *= 5.0
             continue
         moved = (found.trial.displacement - trial.displacement).ravel()
         largest = float(np.abs(moved).max())
-        lost += coefficient * float(newton.mass @ moved**2)
+        lost += float(drag.weights @ moved**2)
         count += found.iterations
         trial = found.trial
         _log.debug("viscosity %.3g: %d iterations, moved %.3g mm", coefficient / scale, found.iterations, largest)
         coefficient *= 0.3
-        if largest < 1e-3 * size or coefficient < scale:
+        if largest < 1e-3 * model.mesh.size or coefficient < scale:
             try:
-                found = newton.solve(trial, values, Anchor(0.0, trial.displacement))
+                found = newton.solve(trial, values, step)
             except IncrementFailedError:
                 continue
             if not found.unstable_modes:  # a saddle on the way is not where a slide ends
@@ -134,14 +174,14 @@ def _lagrange(times: Sequence[float], time: float) -> list[float]:
 
 
 def _state(
-    last: State, phase: str, time: float, found: Converged, values: dict[str, float], lost: float,
-    planned: float,
-) -> State:  # fmt: skip
+    step: Increment, phase: str, time: float, found: Converged, values: dict[str, float], lost: float, planned: float
+) -> State:
     """Return the new state, its energies integrated from the last by the trapezoidal rule.
 
     A viscous slide goes at the new targets all the way: then what is driven works with its new value.
     """
-    model, trial = last.model, found.trial
+    last, trial = step.start, found.trial
+    model, old = last.model, last.energies
     names = list(model.surfaces)
     pressure = dict(zip(names, map(float, trial.pressure), strict=True))
     volume = dict(zip(names, map(float, found.volume), strict=True))
@@ -156,11 +196,26 @@ def _state(
         for name, pattern in model.load_patterns.items()
     )
     held = model.held
-    load += 0.5 * float((found.reactions + last.reactions)[held] @ moved[held])
-    _, strain = model.body.energies(model.mesh.points + trial.displacement, trial.modes)
-    old = last.energies
-    energies = Energies(strain, old.supply + supply, old.load + load, old.viscous + lost)
+    reactions = np.zeros_like(found.imbalance)
+    reactions[held] = found.imbalance[held]
+    moving: dict[str, Array] = {}
+    motion, damped = 0.0, old.kinetic  # without inertia, motion ends
+    if isinstance(step.drag, Inertia):
+        velocity, acceleration = step.drag.motion(trial.displacement)
+        moving = {"velocity": velocity, "acceleration": acceleration, "imbalance": found.imbalance}
+        reactions[held] += step.drag.mass.times(acceleration).ravel()[held]
+        motion = kinetic(step.drag.mass, velocity)
+        damped = step.drag.lost(trial.displacement, found.imbalance)
+    load += 0.5 * float((reactions + last.reactions)[held] @ moved[held])
+    position = model.mesh.points + trial.displacement
+    memory = model.body.remember(position, last.memory, step.seconds)
+    lost += model.body.overstress_work((last.positions, position), (last.memory, memory))
+    _, strain = model.body.energies(position, trial.modes)
+    energies = Energies(
+        strain, old.supply + supply, old.load + load, old.viscous + lost, motion, old.numerical + damped
+    )
     return State(
-        model, last.index + 1, phase, time, trial.displacement, trial.modes, pressure, volume, values, found.reactions,
-        energies, found.iterations, found.unstable_modes, found.smallest_volume_ratio, planned,
+        model, last.index + 1, phase, time, trial.displacement, trial.modes, pressure, volume, values, reactions,
+        energies, found.iterations, None if moving else found.unstable_modes, found.smallest_volume_ratio, planned,
+        last.clock + step.seconds, memory=memory, gas=found.gas, **moving,
     )  # fmt: skip

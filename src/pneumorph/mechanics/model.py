@@ -14,6 +14,8 @@ from pneumorph.materials import Material
 from pneumorph.mechanics.body import Body, cell_volumes
 from pneumorph.mechanics.cavity import Cavity, CavitySurface
 from pneumorph.mechanics.loads import Load, lumped_mass
+from pneumorph.mechanics.supplies import Atmosphere, Supply, Tube
+from pneumorph.mechanics.supplies.checks import check_tubes
 from pneumorph.mechanics.supports import Prescribed, Support
 from pneumorph.mesh.mesh import Mesh
 
@@ -29,6 +31,8 @@ class Model:
     supports:  clamps, rollers, symmetry planes and prescribed displacements; together they must hold the body.
     loads:     gravity, tractions and forces.
     cavities:  the spaces that are inflated.
+    tubes:     tubes between cavities filled with gas.
+    atmosphere: pressure and temperature outside, and the gas.
     pressure:  'constant' or 'linear' pressure modes in each cell (see `mechanics.volumetric`).
 
     Raises InputError for a domain without material or unknown, names given twice, a body that is free to move;
@@ -41,6 +45,8 @@ class Model:
     loads: tuple[Load, ...] = ()
     cavities: tuple[Cavity, ...] = ()
     pressure: str = field(default="constant", kw_only=True)
+    tubes: tuple[Tube, ...] = field(default=(), kw_only=True)
+    atmosphere: Atmosphere = field(default=Atmosphere(), kw_only=True)
 
     def __post_init__(self) -> None:
         if self.pressure not in ("linear", "constant"):
@@ -60,6 +66,7 @@ class Model:
         for load in self.loads:
             load.pattern(self.mesh, self.materials)
         _ = self.surfaces
+        check_tubes(self.tubes, self.supplies)
 
     @property
     def _moved(self) -> tuple[Prescribed, ...]:
@@ -68,8 +75,13 @@ class Model:
     @cached_property
     def kinds(self) -> dict[str, str]:
         """Name -> unit kind of everything that a programme can drive."""
-        kinds = {cavity.name: cavity.supply.kind for cavity in self.cavities}
+        kinds = {name: supply.kind for name, supply in self.supplies.items() if supply.kind is not None}
         return kinds | {item.name: item.kind for item in (*self.loads, *self._moved)}
+
+    @cached_property
+    def supplies(self) -> dict[str, Supply]:
+        """Name -> supply of each cavity."""
+        return {cavity.name: cavity.supply for cavity in self.cavities}
 
     @cached_property
     def body(self) -> Body:

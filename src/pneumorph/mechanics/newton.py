@@ -2,7 +2,7 @@
 
 Full steps, limited by a cap on the displacement and by det F > 0, are all that guards it: an energy line search is
 worse than cutting the increment, because the large bulk modulus makes the energy rise along good steps. Where no cut
-helps, `continuation` adds a viscous term, which comes here as an `Anchor`.
+helps, `continuation` adds a viscous term; `dynamics` adds inertia. Both come here as the `Drag` of an `Increment`.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sparse
@@ -18,6 +19,9 @@ from numpy.typing import NDArray
 from pneumorph.mechanics.body import Assembly
 from pneumorph.mechanics.linear import LinearSolver, linear_solver
 from pneumorph.mechanics.model import Model
+from pneumorph.mechanics.state import State
+from pneumorph.mechanics.supplies import Gas
+from pneumorph.mechanics.supplies.network import Equations, Network, NetworkIncrement
 
 Array = NDArray[np.float64]
 _log = logging.getLogger(__name__)
@@ -35,6 +39,8 @@ class Settings:
     viscosity:     first coefficient of the viscous regularisation that is tried where increments fail, in units of
                    mu / size2 (see `continuation`); 0 switches it off for good.
     relaxations:   viscous steps before an increment is given up.
+    flow_accuracy: error in a cavity's mass of gas that the time integration of flow may make in an increment, as a
+                   share of that mass.
     """
 
     tolerance: float = 1e-8
@@ -45,6 +51,7 @@ class Settings:
     cut: float = 0.4
     viscosity: float = 100.0
     relaxations: int = 60
+    flow_accuracy: float = 1e-4
 
 
 @dataclass(eq=False)
@@ -63,26 +70,46 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Converged:
-    """A trial in equilibrium, with what the iteration found on the way."""
+    """A trial in equilibrium, with what the iteration found on the way.
+
+    imbalance (unknowns,): internal minus applied forces, N, without those of a drag.
+    gas: in the cavities; flow_error: of the integration of its flow, over what the settings allow.
+    """
 
     trial: Trial
     volume: Array
-    reactions: Array
+    imbalance: Array
     iterations: int
     unstable_modes: int | None
     smallest_volume_ratio: float
+    gas: Gas
+    flow_error: float
 
 
 class IncrementFailedError(Exception):
     """An increment did not converge; the message says why."""
 
 
-@dataclass(frozen=True, eq=False)
-class Anchor:
-    """Viscous regularisation of an increment: coefficient (MPa / mm2) and the displacement it starts from."""
+class Drag(Protocol):
+    """A force on the body beside those of the model, linear in the displacement, with a symmetric matrix."""
 
-    coefficient: float
-    displacement: Array
+    def force(self, displacement: Array) -> Array:
+        """Return the force (unknowns,), N, with which it resists at a displacement (nodes, d)."""
+
+    def add_tangent(self, values: Array) -> None:
+        """Add its matrix to the values of the tangent, in the order of the body's pattern."""
+
+
+@dataclass(frozen=True, eq=False)
+class Increment:
+    """What an increment starts from, how long it takes and what it meets.
+
+    start: the state before; seconds: time that passes, 0 where the phase has no duration.
+    """
+
+    start: State
+    seconds: float = 0.0
+    drag: Drag | None = None
 
 
 class Newton:
@@ -100,10 +127,12 @@ class Newton:
         self._free = np.ones(body.unknowns, dtype=bool)
         self._free[self._held] = False
         self._surfaces = list(model.surfaces.values())
-        self._supplies = [surface.cavity.supply for surface in self._surfaces]
-        self.mass = np.repeat(model.unit_mass, body.dimension)
+        self._shear = max(material.shear_modulus for material in model.materials.values())
+        self._network = Network(model.surfaces, model.tubes, model.atmosphere, self._shear)
 
-    def solve(self, trial: Trial, values: Mapping[str, float], anchor: Anchor, *, loose: bool = False) -> Converged:
+    def solve(
+        self, trial: Trial, values: Mapping[str, float], increment: Increment, *, loose: bool = False
+    ) -> Converged:
         """Return the equilibrium at the values of the programme; raises IncrementFailedError.
 
         loose: be content with a thousandth of the forces, within half the iterations (steps of a viscous slide).
@@ -112,44 +141,64 @@ class Newton:
         tolerance = 1e-3 if loose else settings.tolerance
         iterations = settings.iterations // 2 if loose else settings.iterations
         load = self._load(values)
+        supplies = self._network.increment(increment.start, increment.seconds, values)
         given = self.model.prescribed(values)[self._held]
         unstable: int | None = 0
-        best, settled = np.inf, False
+        first = best = before = np.inf
+        settled, factor = False, 1.0
+        factors: _Factors | None = None
+        gain = 1e-2
         for iteration in range(iterations):
-            assembly = self._assemble(trial)
+            assembly = self._assemble(trial, increment)
             position = self.model.mesh.points + trial.displacement
             gradients = [surface.gradient(position) for surface in self._surfaces]
             volumes = np.array([surface.volume(position) for surface in self._surfaces])
             applied = load + sum((p * g for p, g in zip(trial.pressure, gradients, strict=True)), np.zeros_like(load))
-            drag = anchor.coefficient * self.mass * (trial.displacement - anchor.displacement).ravel()
-            residual = assembly.force - applied + drag
-            equations = self._equations(trial.pressure, volumes, values)
+            imbalance = assembly.force - applied
+            residual = imbalance if increment.drag is None else imbalance + increment.drag.force(trial.displacement)
+            equations = supplies.equations(trial.pressure, volumes)
             move = given - trial.displacement.ravel()[self._held]
-            error = self._error(residual, applied, equations, volumes, move)
+            error = self._error(residual, applied, equations, move)
             if not np.isfinite(error):
                 raise IncrementFailedError("the residual is not finite")
             if (error <= tolerance or (settled and error <= 1e-3)) and iteration > 0:
                 ratio = self.model.body.smallest_volume_ratio(position, fine=True)
-                reactions = np.where(self._free, 0.0, residual)
-                return Converged(trial, volumes, reactions, iteration, unstable, ratio)
+                gas = supplies.gas(trial.pressure, volumes)
+                flow_error = supplies.error(trial.pressure, volumes) / settings.flow_accuracy
+                return Converged(trial, volumes, imbalance, iteration, unstable, ratio, gas, flow_error)
             _log.debug("iteration %d: error %.3g, unstable modes %s", iteration, error, unstable)
-            best = min(best, error)
+            # the last factors go on serving while they converge fast: a factorisation costs ten substitutions
+            if unstable or factor < 1.0 or error > min(1e-2, gain * before):
+                factors = None
+            first = error if iteration == 0 else first
+            if iteration >= 5 and error > first:  # a good increment has passed its worst by then
+                raise IncrementFailedError(f"the residual is still larger than at first after {iteration} iterations")
+            best, before = min(best, error), error
             if error > 1e6 * max(best, settings.tolerance):
                 raise IncrementFailedError(f"the residual grew to {error:.2g} of the applied forces")
-            matrix = self._tangent(assembly, position, trial.pressure, anchor)
-            step = self._step(matrix, residual, gradients, equations, move)
-            unstable = step.unstable_modes
-            dq = self.model.body.pressure_step(assembly.gains, step.du)
-            largest = float(np.abs(step.du).max())
+            if factors is None:
+                tangent = self._tangent(assembly, position, trial.pressure, increment.drag)
+                factors, gain = self._factorise(tangent, gradients, equations.softness, move), 1e-2
+                unstable = factors.unstable_modes
+            else:
+                gain = 1e-1
+            du, dp = self._step(factors, residual, gradients, (supplies, equations, trial.pressure), move)
+            dq = self.model.body.pressure_step(assembly.gains, du)
+            largest = float(np.abs(du).max())
             factor = min(1.0, settings.largest_step * self.model.mesh.size / max(largest, 1e-300))
-            factor = self._keep_orientation(position, step.du, factor)
-            trial = trial.stepped(factor, step.du, dq, step.dp)
+            factor = self._keep_orientation(position, du, factor)
+            trial = trial.stepped(factor, du, dq, dp)
             # under a very small load the residual stays at the rounding of the bulk term: then the step tells
-            settled = factor == 1.0 and largest <= 1e-10 * self.model.mesh.size
+            settled = (
+                factor == 1.0
+                and largest <= 1e-10 * self.model.mesh.size
+                and float(np.abs(dp).max(initial=0.0)) <= 1e-10 * self._shear
+            )
         raise IncrementFailedError(f"no convergence in {iterations} iterations")
 
-    def _assemble(self, trial: Trial) -> Assembly:
-        return self.model.body.assemble(self.model.mesh.points + trial.displacement, trial.modes)
+    def _assemble(self, trial: Trial, increment: Increment) -> Assembly:
+        position = self.model.mesh.points + trial.displacement
+        return self.model.body.assemble(position, trial.modes, memory=increment.start.memory, seconds=increment.seconds)
 
     def _load(self, values: Mapping[str, float]) -> Array:
         total = np.zeros(self.model.body.unknowns)
@@ -157,65 +206,77 @@ class Newton:
             total += values.get(name, 0.0) * pattern
         return total
 
-    def _equations(self, pressure: Array, volumes: Array, values: Mapping[str, float]) -> Array:
-        """Return (cavities, 3): g, dg/dp, dg/dV of each supply."""
-        rows = [
-            surface.cavity.supply.equation(p, v, surface.reference_volume, values.get(surface.cavity.name, 0.0))
-            for surface, p, v in zip(self._surfaces, pressure, volumes, strict=True)
-        ]
-        return np.array(rows, dtype=float).reshape(-1, 3)
-
-    def _error(self, residual: Array, applied: Array, equations: Array, volumes: Array, move: Array) -> float:
+    def _error(self, residual: Array, applied: Array, equations: Equations, move: Array) -> float:
         """Return the largest of the relative errors in force, supplies and given displacements."""
         size = np.linalg.norm
-        shear = max(material.shear_modulus for material in self.model.materials.values())
-        least = 1e-6 * shear * self.model.mesh.size**2  # on a way back to zero no force is left to compare with
+        least = 1e-6 * self._shear * self.model.mesh.size**2  # on a way back to zero no force is left to compare with
         scale = max(float(size(applied[self._free])), float(size(residual[self._held])), least)
         force = float(size(residual[self._free]) / scale)
-        supplies = np.abs(equations[:, 0]) / (np.abs(equations[:, 1]) * shear + np.abs(equations[:, 2]) * volumes)
+        supplies = np.abs(equations.value) / equations.scale
         return max(force, supplies.max(initial=0.0), np.abs(move).max(initial=0.0) / self.model.mesh.size)
 
-    def _tangent(self, assembly: Assembly, position: Array, pressure: Array, anchor: Anchor) -> Array:
+    def _tangent(self, assembly: Assembly, position: Array, pressure: Array, drag: Drag | None) -> Array:
         """Return the values of the tangent at fixed cavity pressures, before supports are applied."""
         values = assembly.values
         for surface, p in zip(self._surfaces, pressure, strict=True):
             surface.add_hessian(position, -p, values)
-        values[self.model.body.pattern.diagonal] += anchor.coefficient * self.mass
+        if drag is not None:
+            drag.add_tangent(values)
         return values
 
-    def _step(self, values: Array, residual: Array, gradients: list[Array], equations: Array, move: Array) -> _Step:
+    def _factorise(self, values: Array, gradients: list[Array], softness: Array, move: Array) -> _Factors:
+        """Factor the tangent with its supports, and solve for the cavities' unit pressures; overwrites `values`."""
         diagonal = self.model.body.pattern.diagonal
-        right = -residual
-        if np.any(move):
-            moved = np.zeros_like(residual)
-            moved[self._held] = move
-            right -= _multiply(self._matrix(values), moved)
+        moved = np.zeros(self.model.body.unknowns)
+        moved[self._held] = move
+        pulled = _multiply(self._matrix(values), moved) if np.any(move) else moved
         typical = float(np.abs(values[diagonal]).mean())
         values[self._struck] = 0.0
         values[diagonal[self._held]] = typical
         self.linear.factorise(self._matrix(values))
-        columns = np.column_stack([right, *gradients])
-        columns[self._held] = 0.0
-        solved = self.linear.solve(columns)
-        first, response = solved[:, 0].copy(), solved[:, 1:]
-        first[self._held] = move
-        slopes = np.array(gradients).reshape(len(gradients), len(residual))
-        compliance = slopes @ response
-        g, by_pressure, by_volume = equations.T
-        dp = np.linalg.solve(
-            np.diag(by_pressure) + by_volume[:, None] * compliance, -g - by_volume * (slopes @ first)
-        ) if len(g) else np.zeros(0)  # fmt: skip
-        du = (first + response @ dp).reshape(-1, self.model.mesh.dimension)
-        return _Step(du, dp, self._unstable(compliance, by_volume))
+        slopes = self._slopes(gradients)
+        response = self.linear.solve(slopes.T) if len(slopes) else slopes.T
+        return _Factors(pulled, response, self._unstable(slopes @ response, softness))
 
-    def _unstable(self, compliance: Array, by_volume: Array) -> int | None:
-        """Return the unstable modes at fixed targets: a fixed volume removes one for each negative compliance."""
+    def _step(
+        self, factors: _Factors, residual: Array, gradients: list[Array],
+        filling: tuple[NetworkIncrement, Equations, Array], move: Array,
+    ) -> tuple[Array, Array]:  # fmt: skip
+        """Return the steps in displacement (nodes, d) and cavity pressures (cavities,) of the bordered system.
+
+        filling: the supplies, their equations at the pressures of the trial, and these.
+        """
+        right = -residual - factors.pulled if np.any(move) else -residual
+        right[self._held] = 0.0
+        first = self.linear.solve(right)
+        first[self._held] = move
+        slopes = self._slopes(gradients, held=True)
+        supplies, at, pressure = filling
+        matrix = at.by_pressure + at.by_volume @ (slopes @ factors.response)
+        dp = np.asarray(np.linalg.solve(matrix, -at.value - at.by_volume @ (slopes @ first)), dtype=np.float64)
+        dp *= supplies.share(pressure, dp)
+        return (first + factors.response @ dp).reshape(-1, self.model.mesh.dimension), dp
+
+    def _slopes(self, gradients: list[Array], *, held: bool = False) -> Array:
+        """Return dV/du (cavities, unknowns), zero at what is held unless asked otherwise."""
+        slopes = np.array(gradients).reshape(len(gradients), self.model.body.unknowns)
+        if not held:
+            slopes[:, self._held] = 0.0
+        return slopes
+
+    def _unstable(self, compliance: Array, softness: Array) -> int | None:
+        """Return the unstable modes at fixed targets and contents of the cavities.
+
+        With C = S K^-1 S^T the compliance (c, c) of the volumes under pressure and E = diag(softness), the fluids
+        stiffen the tangent to K + S^T E^-1 S. By Haynsworth's inertia formula, applied both ways to
+        [[K, S^T], [S, -E]], that has as many negative eigenvalues less than K as C + E has.
+        """
         negative = self.linear.negative_pivots()
         if negative is None:
             return None
-        fixed = by_volume != 0.0
-        stiffened = int(np.sum(np.linalg.eigvals(compliance[np.ix_(fixed, fixed)]).real < 0.0)) if fixed.any() else 0
-        return negative - stiffened
+        filled = np.isfinite(softness)
+        softer = compliance[np.ix_(filled, filled)] + np.diag(softness[filled])
+        return negative - int(np.sum(np.linalg.eigvalsh(0.5 * (softer + softer.T)) < 0.0))
 
     def _matrix(self, values: Array) -> sparse.csr_matrix:
         n = self.model.body.unknowns
@@ -234,9 +295,11 @@ class Newton:
 
 
 @dataclass(frozen=True, eq=False)
-class _Step:
-    du: Array
-    dp: Array
+class _Factors:
+    """A factored tangent: its forces under the supports' moves, response to unit cavity pressures, inertia."""
+
+    pulled: Array
+    response: Array
     unstable_modes: int | None
 
 

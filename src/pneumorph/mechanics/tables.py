@@ -14,18 +14,30 @@ Array = NDArray[np.float64]
 _CELLS = {
     "tetra10": basix.CellType.tetrahedron,
     "wedge18": basix.CellType.prism,
+    "hexahedron27": basix.CellType.hexahedron,
     "triangle6": basix.CellType.triangle,
     "quad9": basix.CellType.quadrilateral,
     "line3": basix.CellType.interval,
+    "triangle3": basix.CellType.triangle,
+    "lens3": basix.CellType.triangle,
 }
 
 # position of each VTK node in basix's order
 _FROM_BASIX = {
     "tetra10": [0, 1, 2, 3, 9, 6, 8, 7, 5, 4],
     "wedge18": [0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16],
+    "hexahedron27": [
+        0, 1, 3, 2, 4, 5, 7, 6, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 15, 14, 22, 23, 21, 24, 20, 25, 26,
+    ],
     "triangle6": [0, 1, 2, 5, 3, 4],
     "quad9": [0, 1, 3, 2, 4, 6, 7, 5, 8],
     "line3": [0, 1, 2],
+}  # fmt: skip
+
+# virtual faces of caps are 6-node triangles (rows) whose nodes are means of three real ones (columns)
+_CAPS = {
+    "triangle3": np.array([[2, 0, 0], [0, 2, 0], [0, 0, 2], [1, 1, 0], [0, 1, 1], [1, 0, 1]]) / 2.0,
+    "lens3": np.array([[4, 0, 0], [0, 4, 0], [2, 2, 0], [0, 0, 4], [1, 3, 0], [3, 1, 0]]) / 4.0,
 }
 
 
@@ -54,6 +66,9 @@ def reference_nodes(kind: str) -> Array:
 
 def tabulate(kind: str, points: Array) -> tuple[Array, Array]:
     """Return shape functions (q, n) and their reference gradients (q, n, d) at reference points (q, d)."""
+    if kind in _CAPS:
+        shape, gradient = tabulate("triangle6", points)
+        return shape @ _CAPS[kind], np.einsum("qmj,mn->qnj", gradient, _CAPS[kind])
     order = _FROM_BASIX[kind]
     table: Array = np.asarray(_element(kind).tabulate(1, points), dtype=float)[:, :, :, 0][:, :, order]
     return np.ascontiguousarray(table[0]), np.ascontiguousarray(np.moveaxis(table[1:], 0, -1))
@@ -75,7 +90,15 @@ def cell_table(kind: str, pressure: str = "constant") -> CellTable:
 @cache
 def face_table(kind: str) -> tuple[Array, Array, Array]:
     """Return shape (q, n), gradient (q, n, d) and weight (q,) that integrate the volume under a face exactly."""
-    points, weight = _quadrature(_CELLS[kind], {"triangle6": 4, "quad9": 6, "line3": 6}[kind])
+    points, weight = _quadrature(_CELLS[kind], {"quad9": 6, "line3": 6}.get(kind, 4))
+    shape, gradient = tabulate(kind, points)
+    return shape, gradient, weight
+
+
+@cache
+def mass_rule(kind: str) -> tuple[Array, Array, Array]:
+    """Return shape (q, n), gradient (q, n, d) and weight (q,) of a rule for products of two shape functions."""
+    points, weight = _quadrature(_CELLS[kind], 5)
     shape, gradient = tabulate(kind, points)
     return shape, gradient, weight
 
@@ -92,7 +115,7 @@ def _rule(kind: str) -> tuple[Array, Array]:
         line, line_weight = _quadrature(basix.CellType.interval, 4)
         points = np.array([[*p, z[0]] for z in line for p in plane])
         return points, np.array([a * b for b in line_weight for a in plane_weight])
-    return _quadrature(_CELLS[kind], 2)
+    return _quadrature(_CELLS[kind], 4 if kind == "hexahedron27" else 2)
 
 
 def _quadrature(cell: basix.CellType, degree: int) -> tuple[Array, Array]:

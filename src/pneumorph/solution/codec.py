@@ -14,7 +14,6 @@ import numpy as np
 
 from pneumorph import materials, mechanics
 from pneumorph.errors import PneumorphError, StorageError, unknown_name
-from pneumorph.materials import Material
 
 CLASS = "$class"
 
@@ -28,10 +27,10 @@ def register(item: type) -> type:
 
 
 def _register_all() -> None:
-    """Register the public materials, and the supplies, supports, loads, cavities and programmes of mechanics."""
+    """Register the materials and their parts, the supplies, supports, loads, cavities and programmes of mechanics."""
     for name in materials.__all__:
         item = getattr(materials, name)
-        if isinstance(item, type) and issubclass(item, Material) and not isabstract(item):
+        if is_dataclass(item) and isinstance(item, type) and not isabstract(item):
             register(item)
     for name in mechanics.__all__:
         item = getattr(mechanics, name)

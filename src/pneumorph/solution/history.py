@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumorph.errors import InputError, NameNotFoundError, StorageError, unknown_name
-from pneumorph.mechanics import Model, State
+from pneumorph.mechanics import FlowSupply, Model, Programme, State
+from pneumorph.mechanics.supplies import GasFilled
 from pneumorph.solution.files import write_atomically
 from pneumorph.units import printed_unit, to_printed
 
@@ -77,6 +78,13 @@ class History:
         kind = self.column(key).kind
         return np.array([row[key] for row in self.rows], dtype=str if kind == TEXT else np.float64)
 
+    @property
+    def kept_energy(self) -> NDArray[np.float64]:
+        """What the works of the run were turned into (rows,), mJ: stored, of motion, and lost."""
+        kinds = ("strain_energy", "viscous_loss", "kinetic_energy", "numerical_loss")
+        total: NDArray[np.float64] = np.sum([self.values(key) for key in kinds if key in self.keys], axis=0)
+        return total
+
     def write_csv(self, path: Path) -> None:
         """Write the rows in printed units, with all their digits; the file is replaced in one go."""
 
@@ -120,15 +128,27 @@ def _text(value: Any, kind: str) -> str:
     return str(int(number)) if kind == "number" and number.is_integer() else repr(number)
 
 
-def columns(model: Model, measures: Sequence[Measure]) -> list[Column]:
-    """Return the columns of a model's history; raises InputError for a measure whose name is taken."""
+def columns(model: Model, programme: Programme, measures: Sequence[Measure]) -> list[Column]:
+    """Return the columns of a history; raises InputError for a measure whose name is taken.
+
+    The clock stands there if a phase has a duration, energies of motion if one has inertia.
+    """
     result = [Column("index", "state", "number"), Column("phase", "phase", TEXT), Column("time", "time", "number")]
+    if any(phase.duration for phase in programme.phases):
+        result.append(Column("clock", "time since the start", "time"))
     for cavity in model.surfaces:
         result += [
             Column(f"pressure:{cavity}", f"gauge pressure in {cavity}", "pressure"),
             Column(f"volume:{cavity}", f"volume of {cavity}", "volume"),
             Column(f"added_volume:{cavity}", f"volume added to {cavity}", "volume"),
         ]
+        if isinstance(model.supplies[cavity], GasFilled):
+            result += [
+                Column(f"gas_mass:{cavity}", f"mass of gas in {cavity}", "mass"),
+                Column(f"temperature:{cavity}", f"temperature in {cavity}", "temperature"),
+            ]
+        if isinstance(model.supplies[cavity], FlowSupply):
+            result.append(Column(f"source:{cavity}", f"gauge pressure of the source of {cavity}", "pressure"))
     result += [Column(f"value:{n}", n, kind) for n, kind in model.kinds.items() if n not in model.surfaces]
     for measure in measures:
         printed_unit(measure.kind)
@@ -137,7 +157,14 @@ def columns(model: Model, measures: Sequence[Measure]) -> list[Column]:
         Column("strain_energy", "strain energy", "energy"),
         Column("supply_work", "work of the supplies", "energy"),
         Column("load_work", "work of loads and moved supports", "energy"),
-        Column("viscous_loss", "energy lost in regularisation", "energy"),
+        Column("viscous_loss", "energy lost in viscosity", "energy"),
+    ]
+    if any(phase.inertia for phase in programme.phases):
+        result += [
+            Column("kinetic_energy", "kinetic energy", "energy"),
+            Column("numerical_loss", "energy lost in the time integration", "energy"),
+        ]
+    result += [
         Column("energy_error", "relative error of the energy balance", "number"),
         Column("iterations", "Newton iterations", "number"),
         Column("unstable_modes", "unstable modes", "number"),
@@ -153,11 +180,16 @@ def columns(model: Model, measures: Sequence[Measure]) -> list[Column]:
 def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
     """Return the row of a state: key -> value in inside units."""
     surfaces, energies = state.model.surfaces, state.energies
-    result: dict[str, Any] = {"index": state.index, "phase": state.phase, "time": state.time}
+    result: dict[str, Any] = {"index": state.index, "phase": state.phase, "time": state.time, "clock": state.clock}
     for cavity, surface in surfaces.items():
         result[f"pressure:{cavity}"] = float(state.pressure[cavity])
         result[f"volume:{cavity}"] = float(state.volume[cavity])
         result[f"added_volume:{cavity}"] = float(state.volume[cavity] - surface.reference_volume)
+        if cavity in state.gas.mass:
+            result[f"gas_mass:{cavity}"] = float(state.gas.mass[cavity])
+            result[f"temperature:{cavity}"] = state.temperature(cavity)
+        if isinstance(surface.cavity.supply, FlowSupply):
+            result[f"source:{cavity}"] = float(state.values.get(cavity, 0.0))
     result |= {f"value:{n}": float(state.values.get(n, 0.0)) for n in state.model.kinds if n not in surfaces}
     result |= {measure.name: float(measure(state)) for measure in measures}
     return result | {
@@ -165,6 +197,8 @@ def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
         "supply_work": energies.supply,
         "load_work": energies.load,
         "viscous_loss": energies.viscous,
+        "kinetic_energy": energies.kinetic,
+        "numerical_loss": energies.numerical,
         "energy_error": energies.relative_error,
         "iterations": state.iterations,
         "unstable_modes": math.nan if state.unstable_modes is None else state.unstable_modes,

@@ -68,7 +68,7 @@ def solve(
     settings = settings or Settings()
     measures = tuple(measures)
     programme.check(model)
-    heads = columns(model, measures)
+    heads = columns(model, programme, measures)
     row(rest(model), measures)  # a measure that does not fit the model fails before anything is written
     if resume and folder is None:
         raise InputError("resume = True needs the folder of the run")

@@ -162,6 +162,8 @@ def describe(model: Model) -> dict[str, Any]:
         "loads": encode(model.loads, "loads"),
         "cavities": encode(model.cavities, "cavities"),
         "pressure": model.pressure,
+        "tubes": encode(model.tubes, "tubes"),
+        "atmosphere": encode(model.atmosphere, "atmosphere"),
     }
 
 

@@ -24,7 +24,7 @@ from pneumorph.solution.codec import decode, encode
 from pneumorph.solution.files import write_atomically
 
 GROUP, OWN = "VTKHDF", "pneumorph"
-VTK_TYPES = {"tetra10": 24, "wedge18": 32, "triangle6": 22}
+VTK_TYPES = {"tetra10": 24, "wedge18": 32, "hexahedron27": 29, "triangle6": 22}
 _GEOMETRY = (
     "NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds", "Points", "Connectivity", "Offsets", "Types",
 )  # fmt: skip
@@ -58,11 +58,13 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
                     "bending_walls": dict(mesh.bending_walls),
                     "blocks": [[block.kind, block.domain, len(block.nodes)] for block in mesh.blocks],
                     "faces": {name: [block.kind for block in blocks] for name, blocks in mesh.faces.items()},
+                    "caps": {name: [block.kind for block in blocks] for name, blocks in mesh.caps.items()},
                 }
             )
-            for number, blocks in enumerate(mesh.faces.values()):
-                for part, block in enumerate(blocks):
-                    own[f"faces/{number}/{part}"] = block.nodes
+            for group, named in (("faces", mesh.faces), ("caps", mesh.caps)):
+                for number, blocks in enumerate(named.values()):
+                    for part, block in enumerate(blocks):
+                        own[f"{group}/{number}/{part}"] = block.nodes
 
     write_atomically(path, write)
 
@@ -81,11 +83,14 @@ def read_mesh(path: Path) -> Mesh:
             size = count * int(widths[first])
             blocks.append(CellBlock(kind, domain, connectivity[start : start + size].reshape(count, -1)))
             start, first = start + size, first + count
-        faces = {
-            name: tuple(FaceBlock(kind, own[f"faces/{number}/{part}"][:]) for part, kind in enumerate(kinds))
-            for number, (name, kinds) in enumerate(about["faces"].items())
-        }
-        return Mesh(points, tuple(blocks), faces, about["space"], about["bending_walls"])
+        faces, caps = (
+            {
+                name: tuple(FaceBlock(kind, own[f"{group}/{number}/{part}"][:]) for part, kind in enumerate(kinds))
+                for number, (name, kinds) in enumerate(about.get(group, {}).items())
+            }
+            for group in ("faces", "caps")
+        )
+        return Mesh(points, tuple(blocks), faces, about["space"], about["bending_walls"], caps)
 
     return _read(path, "mesh", read)
 

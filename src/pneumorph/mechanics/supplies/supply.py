@@ -1,4 +1,4 @@
-"""Supplies: what fills a cavity, each a scalar equation g(p, V) = 0 that borders the system."""
+"""Supplies whose equation needs nothing but pressure and volume: a regulator and a syringe."""
 
 from __future__ import annotations
 
@@ -7,13 +7,17 @@ from typing import ClassVar, Protocol
 
 
 class Supply(Protocol):
-    """A source with one number that the programme drives, its target.
+    """What fills a cavity, as an equation g(p, V) = 0, with at most one number that the programme drives, its target.
 
-    kind: unit kind of the target; works: whether the supplied fluid has the potential -p V at a fixed target.
+    kind: unit kind of the target, None where there is none; sets_pressure: whether the target is the cavity's pressure.
     """
 
-    kind: ClassVar[str]
+    kind: ClassVar[str | None]
     sets_pressure: ClassVar[bool]
+
+
+class DirectSupply(Supply, Protocol):
+    """A supply that knows its equation from the present pressure and volume alone."""
 
     def equation(
         self, pressure: float, volume: float, start_volume: float, target: float
@@ -23,9 +27,9 @@ class Supply(Protocol):
 
 @dataclass(frozen=True)
 class PressureSupply:
-    """A regulator: the target is the gauge pressure, MPa; negative ones are a vacuum."""
+    """A regulator: the target is the gauge pressure, MPa; negative ones are a vacuum, down to that of empty space."""
 
-    kind: ClassVar[str] = "pressure"
+    kind: ClassVar[str | None] = "pressure"
     sets_pressure: ClassVar[bool] = True
 
     def equation(
@@ -39,7 +43,7 @@ class PressureSupply:
 class VolumeSupply:
     """A syringe with an incompressible fluid: the target is the volume added to the initial one, mm3."""
 
-    kind: ClassVar[str] = "volume"
+    kind: ClassVar[str | None] = "volume"
     sets_pressure: ClassVar[bool] = False
 
     def equation(

@@ -1,0 +1,70 @@
+"""The consistent mass matrix, on the nodes and in the pattern of the tangent."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sparse
+from numpy.typing import NDArray
+
+from pneumorph.errors import InputError
+from pneumorph.mechanics.body import cell_volumes
+from pneumorph.mechanics.model import Model
+from pneumorph.mechanics.tables import mass_rule
+
+Array = NDArray[np.float64]
+
+
+class Mass:
+    """int rho N_a N_b dV of a model, tonne, by a rule that integrates it exactly in cells with straight edges.
+
+    Raises InputError for a material without a density.
+    """
+
+    def __init__(self, model: Model):
+        check_densities(model)
+        self._pattern = model.body.pattern
+        nodes = len(model.mesh.points)
+        self._own = np.zeros(nodes)
+        self._shared = np.zeros(len(self._pattern.keys))
+        for block in model.mesh.blocks:
+            rule = mass_rule(block.kind)
+            weights = (model.materials[block.domain].density or 0.0) * cell_volumes(model.mesh, block, rule)
+            matrices = np.einsum("eq,qa,qb->eab", weights, rule[0], rule[0])
+            a, b = np.triu_indices(block.nodes.shape[1])
+            first, second, share = block.nodes[:, a].ravel(), block.nodes[:, b].ravel(), matrices[:, a, b].ravel()
+            same = first == second
+            self._own += np.bincount(first[same], share[same], nodes)
+            first, second, share = first[~same], second[~same], share[~same]
+            keys = np.minimum(first, second) * nodes + np.maximum(first, second)
+            self._shared += np.bincount(np.searchsorted(self._pattern.keys, keys), share, len(self._shared))
+
+    def times(self, vectors: Array) -> Array:
+        """Return M x (nodes, d) of nodal vectors (nodes, d)."""
+        result: Array = self._matrix @ vectors
+        return result
+
+    def add(self, factor: float, values: Array) -> None:
+        """Add a multiple of the matrix to values in the order of the pattern."""
+        d, rows = self._pattern.dimension, self._pattern.indptr[:-1]
+        node = self._pattern.keys // self._pattern.nodes
+        rank = np.arange(len(node)) - self._pattern.start[node]
+        for i in range(d):
+            own = rows[i::d]
+            values[own] += factor * self._own
+            values[own[node] + d + d * rank] += factor * self._shared
+
+    @cached_property
+    def _matrix(self) -> sparse.csr_matrix:
+        nodes = self._pattern.nodes
+        row, column = self._pattern.keys // nodes, self._pattern.keys % nodes
+        upper = sparse.csr_matrix((self._shared, (row, column)), shape=(nodes, nodes))
+        return upper + upper.T + sparse.diags(self._own, format="csr")
+
+
+def check_densities(model: Model) -> None:
+    """Raise an InputError for a material without a density."""
+    for domain, material in model.materials.items():
+        if material.density is None:
+            raise InputError(f"inertia needs a density for the material of '{domain}', which has none")
