@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import struct
 from pathlib import Path
-
-import numpy as np
 
 from pneumorph.errors import InputError, StorageError, unknown_name
 from pneumorph.geometry import occ
 from pneumorph.geometry.actuator import Actuator
+from pneumorph.geometry.stl import stl_bytes
 
 SUFFIXES = (".step", ".stl", ".stp")
 
@@ -38,12 +36,6 @@ def export(actuator: Actuator, path: str | Path, *, size: float | None = None) -
 
 
 def _stl(actuator: Actuator, size: float | None) -> bytes:
-    """Return a binary STL file: 80 bytes of header, a count, and 50 bytes a triangle."""
+    """Return the surface of an actuator as a binary STL file."""
     points, triangles = occ.surface(actuator.shape(), size=size or actuator.default_size)
-    corners = points[triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    table = np.zeros(len(triangles), dtype=[("vectors", "<f4", (4, 3)), ("attribute", "<u2")])
-    table["vectors"][:, 0], table["vectors"][:, 1:] = normals, corners
-    header = f"pneumorph {type(actuator).__name__}, mm".encode().ljust(80)
-    return header + struct.pack("<I", len(triangles)) + table.tobytes()
+    return stl_bytes(points, triangles, type(actuator).__name__)
