@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.mesh.decks import deck
 
 from pneumorph.materials import NeoHookean
 from pneumorph.mechanics.body import Body
@@ -11,7 +12,6 @@ from pneumorph.mesh.mesh import FaceBlock, Mesh
 from pneumorph.mesh.rims import cap, cap_corners
 from pneumorph.mesh.skin import integrals
 from pneumorph.solution.vtkhdf import read_mesh, write_mesh
-from tests.mesh.decks import deck
 
 
 @pytest.fixture(scope="module")

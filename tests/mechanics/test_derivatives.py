@@ -12,6 +12,7 @@ from pneumorph.mesh.structured import box, rectangle
 MESHES = {
     "tetra10": lambda: box(1, 1, 2, distortion=0.1),
     "wedge18": lambda: box(1, 1, 1, kind="wedge18", distortion=0.1),
+    "hexahedron27": lambda: box(1, 1, 1, kind="hexahedron27", distortion=0.1),
     "plane strain": lambda: rectangle(2, 1, distortion=0.1),
     "axisymmetric": lambda: rectangle(2, 1, space="axisymmetric", distortion=0.1),
 }

@@ -13,6 +13,7 @@ from pneumorph.mesh.structured import box, rectangle
 MESHES = {
     "tetra10": lambda: box(2, 2, 2, distortion=0.3),
     "wedge18": lambda: box(2, 2, 2, kind="wedge18", distortion=0.3),
+    "hexahedron27": lambda: box(2, 2, 2, kind="hexahedron27", distortion=0.3),
     "plane strain": lambda: rectangle(3, 3, distortion=0.3),
     "axisymmetric": lambda: rectangle(3, 3, space="axisymmetric", distortion=0.3),
 }

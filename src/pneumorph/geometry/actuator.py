@@ -65,6 +65,10 @@ class Actuator(ABC):
     def cavities(self) -> tuple[str, ...]:
         """Names of the pressurised cavities; each is also the name of all its faces."""
 
+    def cavity_faces(self, cavity: str) -> tuple[str, ...]:
+        """Names of the faces that bound a cavity: those that bear its name."""
+        return (cavity,)
+
     @property
     @abstractmethod
     def face_names(self) -> tuple[str, ...]:

@@ -5,19 +5,23 @@ No other module imports netgen. A `Shape` is opaque outside this file.
 
 from __future__ import annotations
 
+import logging
 import math
-from collections.abc import Iterable, Sequence
+import re
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pyngcore
-from netgen import meshing, occ
+from netgen import meshing, occ, stl
 from numpy.typing import NDArray
 
 from pneumorph.errors import EngineError, GeometryError, MeshError
 from pneumorph.geometry.quiet import caught_output
+from pneumorph.geometry.stl import stl_bytes
 
 Shape = Any
 Point = tuple[float, float, float]
@@ -32,6 +36,7 @@ _OPTIMIZE = "cmdDmustmcmdDmustm"
 _TRIES = (1.0, 0.9, 0.8, 0.65)
 _GOOD = 0.05
 
+_log = logging.getLogger(__name__)
 meshing.SetMessageImportance(0)
 
 
@@ -161,6 +166,77 @@ def write_step(shape: Shape, path: Path) -> None:
         raise EngineError(f"'{path}': Open CASCADE cannot write this STEP file ({error})") from error
 
 
+# --- import ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class CadFile:
+    """What a STEP or IGES file holds, in mm. Face i of `shape` is named str(i), for `mesh_solid`.
+
+    names, colours: of each face as in the file, "" where it has none; domains: names of the solids, as many as solids;
+    volume (mm³) of all solids, area (mm²) of all faces.
+    """
+
+    shape: Shape
+    names: tuple[str, ...]
+    colours: tuple[str, ...]
+    domains: tuple[str, ...]
+    volume: float
+    area: float
+
+
+def read_cad(path: Path) -> CadFile:
+    """Return the solids of a STEP or IGES file, in mm whatever the file's unit; solids that touch share the faces.
+
+    Loose faces that close are sewn to a solid. Raises GeometryError for a file that cannot be read, holds no solid, or
+    holds solids that overlap.
+    """
+    solids = _solids_of(path)
+    for i, first in enumerate(solids):
+        for j, second in enumerate(solids[:i]):
+            shared = common(first, second).mass if _boxes_meet(first, second) else 0.0
+            if shared > 1e-6 * min(first.mass, second.mass):
+                corners = _show_box(common(first, second))
+                raise GeometryError(
+                    f"'{path}': the solids {j + 1} and {i + 1} overlap by {shared:.4g} mm3 in {corners}"
+                )
+    names = [solid.name or f"body_{i + 1}" for i, solid in enumerate(solids)] if len(solids) > 1 else ["body"]
+    shape = bonded(list(zip(solids, names, strict=True)))
+    faces = list(shape.faces)
+    given = tuple("" if face.name in (None, "NONE", "default") else str(face.name) for face in faces)
+    colours = tuple(_hexadecimal(face.col) for face in faces)
+    for number, face in enumerate(faces):
+        face.name = str(number)
+    return CadFile(shape, given, colours, tuple(names), volume(shape), math.fsum(float(face.mass) for face in faces))
+
+
+def _solids_of(path: Path) -> list[Shape]:
+    try:
+        with caught_output() as printed:
+            shape = occ.OCCGeometry(str(path)).shape
+            solids = list(shape.solids)
+            if not solids and list(shape.faces):
+                solids = list(occ.Solid(occ.Sew(list(shape.faces), 1e-3)).solids)
+    except Exception as error:  # Netgen and Open CASCADE raise several unrelated types
+        reason = re.sub(r"\x1b\[[0-9;]*m|\*{2,}", "", " ".join(printed.text.split())) or error
+        raise GeometryError(f"'{path}': Open CASCADE cannot make a solid of this file: {reason}".strip()) from error
+    if not solids or any(not solid.mass > 0.0 for solid in solids):
+        raise GeometryError(
+            f"'{path}': {len(solids)} solids, {len(list(shape.faces))} faces; expected at least one solid of positive "
+            "volume (export the body as a solid, not as surfaces)"
+        )
+    return solids
+
+
+def _boxes_meet(first: Shape, second: Shape) -> bool:
+    (a, b), (c, d) = _corners(first), _corners(second)
+    return all(low < high for low, high in zip((*a, *c), (*d, *b), strict=True))
+
+
+def _hexadecimal(colour: Sequence[float] | None) -> str:
+    return "" if colour is None else "#" + "".join(f"{round(255 * c):02x}" for c in list(colour)[:3])
+
+
 # --- meshing --------------------------------------------------------------------------------------------------------
 
 
@@ -176,7 +252,62 @@ def mesh_solid(
     fails.
     """
     _set_face_sizes(shape, face_sizes or {})
-    mesh = _run_netgen(shape, size, grading, detail, surface_only=False)
+    return _raw_mesh(_run_netgen(shape, size, grading, detail, surface_only=False))
+
+
+def mesh_triangles(
+    points: NDArray[np.float64], triangles: NDArray[np.int64], *, size: float, grading: float
+) -> RawMesh:
+    """Return the mesh of 10-node tetrahedra inside closed triangulated surfaces, such as an STL file holds.
+
+    points (n, 3), mm; triangles (k, 3), outward normals, walls of inner cavities included. The surfaces are meshed anew
+    between their sharp edges, size and tries as in `mesh_solid`; where that fails, or loses more than 2 % of the
+    volume, their own triangles are kept. Raises MeshError if that fails too.
+    """
+    corners = points[triangles]
+    wanted = float(np.linalg.det(corners).sum()) / 6.0
+    geometry = _stl_geometry(points, triangles)
+    makers = [
+        lambda limit: geometry.GenerateMesh(maxh=limit, grading=grading, optimize3d=_OPTIMIZE),
+        lambda limit: _filled(points, triangles, limit, grading),
+    ]
+    reason = "flat or inverted tetrahedra"
+    for make in makers:
+        mesh, why = _first_good(make, size)
+        reason = why or reason
+        if mesh is not None and abs(_volume_of(mesh) / wanted - 1.0) < 0.02:
+            if make is not makers[0]:
+                _log.warning("the surface could not be meshed anew (%s): its own triangles are kept", reason)
+            return _raw_mesh(mesh)
+    raise MeshError(f"Netgen cannot mesh the inside of the {len(triangles)} triangles at size {size:.3g} mm: {reason}")
+
+
+def _stl_geometry(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> Any:
+    """Return Netgen's geometry of triangles; it takes them from a file only, and trusts the normals in it."""
+    with tempfile.TemporaryDirectory() as folder, caught_output():
+        path = Path(folder) / "surface.stl"
+        path.write_bytes(stl_bytes(points, triangles, "surface"))
+        return stl.STLGeometry(str(path))
+
+
+def _filled(points: NDArray[np.float64], triangles: NDArray[np.int64], size: float, grading: float) -> Any:
+    """Return Netgen's mesh of tetrahedra on given triangles."""
+    mesh = meshing.Mesh(3)
+    mesh.Add(meshing.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1))
+    mesh.AddPoints(np.ascontiguousarray(points))
+    mesh.AddElements(dim=2, index=1, data=np.ascontiguousarray(triangles, dtype=np.int32), base=0)
+    mesh.GenerateVolumeMesh(maxh=size, grading=grading, optimize3d=_OPTIMIZE)
+    return mesh
+
+
+def _volume_of(mesh: Any) -> float:
+    cells, _ = _arrays(mesh.Elements3D(), 4)
+    corners = np.array(mesh.Coordinates(), dtype=np.float64)[cells]
+    return float(np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])).sum()) / 6.0
+
+
+def _raw_mesh(mesh: Any) -> RawMesh:
+    """Return the arrays of Netgen's mesh, which gets mid-edge nodes."""
     mesh.SecondOrder()
     points = np.array(mesh.Coordinates(), dtype=np.float64)
     cells, domain = _arrays(mesh.Elements3D(), 10)
@@ -220,6 +351,17 @@ def _run_netgen(shape: Shape, size: float, grading: float, detail: float, surfac
     settings = {"grading": grading, "segmentsperedge": detail, "perfstepsend": last, "optimize3d": _OPTIMIZE}
     if detail < 1.0:
         settings["curvaturesafety"] = 1.0
+    mesh, reason = _first_good(
+        lambda limit: occ.OCCGeometry(shape).GenerateMesh(maxh=limit, **settings), size, check=not surface_only
+    )
+    if mesh is not None:
+        return mesh
+    sizes = ", ".join(f"{factor * size:.3g}" for factor in _TRIES)
+    raise MeshError(f"Netgen cannot mesh the solid in {_show_box(shape)} at sizes {sizes} mm: {reason}")
+
+
+def _first_good(make: Callable[[float], Any], size: float, check: bool = True) -> tuple[Any, str]:
+    """Return the first mesh of all tries without slivers, else the best, else None; and the last reason of failure."""
     best, best_quality, reason = None, 0.0, "flat or inverted tetrahedra"
     threads = pyngcore.GetNumThreads()
     pyngcore.SetNumThreads(1)
@@ -227,22 +369,18 @@ def _run_netgen(shape: Shape, size: float, grading: float, detail: float, surfac
         for factor in _TRIES:
             try:
                 with caught_output() as printed:
-                    mesh = occ.OCCGeometry(shape).GenerateMesh(maxh=factor * size, **settings)
+                    mesh = make(factor * size)
             except Exception as error:  # Netgen and Open CASCADE raise several unrelated types
                 reason = " / ".join([str(error), *printed.text.strip().splitlines()[-1:]])
                 continue
-            quality = 1.0 if surface_only else _smallest_quality(mesh)
+            quality = _smallest_quality(mesh) if check else 1.0
             if quality >= _GOOD:
-                return mesh
+                return mesh, reason
             if quality > best_quality:
                 best, best_quality = mesh, quality
     finally:
         pyngcore.SetNumThreads(threads)
-    if best is not None:
-        return best
-    where = " to ".join(str(tuple(round(v, 3) + 0.0 for v in corner)) for corner in _corners(shape))
-    sizes = ", ".join(f"{factor * size:.3g}" for factor in _TRIES)
-    raise MeshError(f"Netgen cannot mesh the solid in {where} mm at sizes {sizes} mm: {reason}")
+    return best, reason
 
 
 def _smallest_quality(mesh: Any) -> float:
@@ -258,6 +396,10 @@ def _smallest_quality(mesh: Any) -> float:
 
 def _corners(shape: Shape) -> list[Point]:
     return [(p.x, p.y, p.z) for p in shape.bounding_box]
+
+
+def _show_box(shape: Shape) -> str:
+    return " to ".join(str(tuple(round(v, 3) + 0.0 for v in corner)) for corner in _corners(shape)) + " mm"
 
 
 def _arrays(elements: Any, nodes: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pneumorph.geometry import occ
 from pneumorph.geometry.actuator import Actuator, millimetres
@@ -22,7 +22,9 @@ class ThickSphere(Actuator):
 
     inner_radius: float = millimetres(10.0, "A", "inner radius")
     outer_radius: float = millimetres(15.0, "B", "outer radius")
-    octant: bool = False
+    octant: bool = field(
+        default=False, metadata={"help": "keep the part with x, y, z >= 0 only, cut in planes of symmetry"}
+    )
 
     @property
     def cavities(self) -> tuple[str, ...]:

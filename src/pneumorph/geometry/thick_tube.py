@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pneumorph.geometry import occ
 from pneumorph.geometry.actuator import Actuator, millimetres
@@ -23,7 +23,9 @@ class ThickTube(Actuator):
     outer_radius: float = millimetres(15.0, "B", "outer radius")
     length: float = millimetres(40.0, "L", "whole length")
     cap: float = millimetres(5.0, "c", "thickness of the end caps, 0 for open ends", zero=True)
-    quarter: bool = False
+    quarter: bool = field(
+        default=False, metadata={"help": "keep the part with x, y >= 0 only, cut in planes of symmetry"}
+    )
 
     @property
     def cavities(self) -> tuple[str, ...]:

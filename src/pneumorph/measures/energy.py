@@ -10,7 +10,7 @@ from pneumorph.mechanics import State
 
 @dataclass(frozen=True)
 class EnergyImbalance:
-    """(supply work + load work - strain energy - viscous loss) over the largest of them; 0 when all is accounted for.
+    """What works and energies differ by, over the largest of them; 0 when all is accounted for (see `Energies`).
 
     The works are integrated over the increments by the trapezoidal rule, so what is left falls with their square.
     """
@@ -28,6 +28,6 @@ def energy_check(states: Iterable[State]) -> float:
     worst, largest = 0.0, 0.0
     for state in states:
         energies = state.energies
-        worst = max(worst, abs(energies.supply + energies.load - energies.strain - energies.viscous))
+        worst = max(worst, abs(energies.difference))
         largest = max(largest, abs(energies.strain))
     return worst / largest if largest else 0.0

@@ -93,6 +93,9 @@ def _depth(kind: str, local: Array) -> Array:
         sides = [x, y, local[:, 2], 1.0 - local.sum(axis=1)]
     elif kind == "wedge18":
         sides = [x, y, 1.0 - x - y, local[:, 2], 1.0 - local[:, 2]]
+    elif kind == "hexahedron27":
+        z = local[:, 2]
+        sides = [x, y, z, 1.0 - x, 1.0 - y, 1.0 - z]
     else:
         sides = [x, y, 1.0 - x - y]
     result: Array = np.min(sides, axis=0)

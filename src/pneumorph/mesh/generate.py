@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -10,7 +11,10 @@ import numpy as np
 from pneumorph.errors import MeshError
 from pneumorph.geometry import occ
 from pneumorph.geometry.actuator import Actuator
+from pneumorph.mesh.body import MeshSize
+from pneumorph.mesh.imported import Imported
 from pneumorph.mesh.mesh import CellBlock, FaceBlock, Mesh
+from pneumorph.mesh.quadratic import positive
 from pneumorph.mesh.reference import straightened
 from pneumorph.mesh.topology import boundary, corner_keys
 
@@ -32,8 +36,15 @@ def generate(
     detail: how much short edges refine their surroundings, 1 for an element no larger than the edge; 1, coarse 0.2.
     wall_size: largest edge in mm on the cavity faces, if smaller than `size`.
 
+    An imported body is meshed when it is made: here its mesh is returned or, with other settings, made anew.
+
     Raises MeshError for settings out of range or a solid that Netgen cannot mesh.
     """
+    if isinstance(actuator, Imported):
+        if wall_size is not None:
+            raise MeshError(f"mesh: wall_size = {wall_size!r}: only templates know their walls before they are meshed")
+        asked = MeshSize(size, coarse, grading, detail)
+        return actuator.mesh if asked in (MeshSize(), actuator.meshing) else replace(actuator, meshing=asked).mesh
     size = _positive("size", actuator.default_size * (1.625 if coarse else 1.0) if size is None else size)
     grading = _positive("grading", 0.8 if grading is None else grading, 1.0)
     detail = _positive("detail", (0.2 if coarse else 1.0) if detail is None else detail)
@@ -46,7 +57,7 @@ def generate(
 
 def from_raw(raw: occ.RawMesh, actuator: Actuator) -> Mesh:
     """Return the checked mesh of an actuator from the arrays that Netgen delivers."""
-    points, cells = raw.points, _positive_cells(raw.points, raw.cells)
+    points, cells = raw.points, positive(raw.points, raw.cells)
     points = straightened(points, "tetra10", cells)
     used, cells = np.unique(cells, return_inverse=True)
     triangles = np.searchsorted(used, raw.triangles)
@@ -71,15 +82,6 @@ def _positive(name: str, value: float, largest: float = math.inf) -> float:
         upper = f" and at most {largest:g}" if math.isfinite(largest) else ""
         raise MeshError(f"mesh: {name} = {value!r}: expected a finite number greater than 0{upper}")
     return float(value)
-
-
-def _positive_cells(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Return the cells with the second and third corner exchanged where the corners span a negative volume."""
-    a, b, c, d = (points[cells[:, i]] for i in range(4))
-    negative = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0.0
-    cells = cells.copy()
-    cells[negative] = cells[negative][:, [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]]
-    return cells
 
 
 def _name_faces(

@@ -15,8 +15,10 @@ from pneumorph.errors import MeshError, NameNotFoundError, unknown_name
 Space = Literal["3d", "plane_strain", "axisymmetric"]
 
 # kind of cell or face -> number of nodes; names and node order are those of meshio and VTK
-CELL_NODES = {"tetra10": 10, "wedge18": 18, "triangle6": 6}
+CELL_NODES = {"tetra10": 10, "wedge18": 18, "hexahedron27": 27, "triangle6": 6}
 FACE_NODES = {"triangle6": 6, "quad9": 9, "line3": 3}
+# virtual faces on nodes of a rim: plane triangle; the area between a quadratic edge (end, end, middle) and its chord
+CAP_NODES = {"triangle3": 3, "lens3": 3}
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,7 @@ class Mesh:
     faces:  name -> blocks of faces (edges in two dimensions); a face has one name only.
     space:  "3d", "plane_strain" (1 mm thick) or "axisymmetric" (about the axis x = 0).
     bending_walls: name -> thickness in mm of the walls that bend, for the check of elements across a wall.
+    caps:   name -> virtual membranes that close cavities where the body leaves them open; no part of the body.
 
     Raises MeshError for arrays of the wrong shape, nodes out of range or values that are not finite.
     """
@@ -54,6 +57,7 @@ class Mesh:
     faces: Mapping[str, tuple[FaceBlock, ...]]
     space: Space = "3d"
     bending_walls: Mapping[str, float] = field(default_factory=dict)
+    caps: Mapping[str, tuple[FaceBlock, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         dimension = 3 if self.space == "3d" else 2
@@ -65,6 +69,7 @@ class Mesh:
             (block.kind, block.nodes, CELL_NODES) for block in self.blocks
         ]
         everything += [(face.kind, face.nodes, FACE_NODES) for faces in self.faces.values() for face in faces]
+        everything += [(face.kind, face.nodes, CAP_NODES) for faces in self.caps.values() for face in faces]
         for kind, nodes, known in everything:
             if kind not in known:
                 raise MeshError(unknown_name("kind of cell or face", kind, known))

@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 _SIMPLICES: dict[str, list[tuple[int, ...]]] = {
     "tetra10": [(0, 1, 2, 3)],
     "wedge18": [(0, 1, 2, 3), (1, 2, 3, 4), (2, 3, 4, 5)],
+    "hexahedron27": [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)],
     "triangle6": [(0, 1, 2)],
 }
 _RAYS = 4000  # enough to hit every kind of wall; more cost time only

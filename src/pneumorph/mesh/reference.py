@@ -20,24 +20,38 @@ _TETRA += [(0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0), (0, 0, 0.5), (0.5, 0, 0.5), 
 _WEDGE = [(*_TRIANGLE[i], z) for half, z in [((0, 1, 2), 0.0), ((0, 1, 2), 1.0), ((3, 4, 5), 0.0)] for i in half]
 _WEDGE += [(*_TRIANGLE[i], z) for half, z in [((3, 4, 5), 1.0), ((0, 1, 2), 0.5), ((3, 4, 5), 0.5)] for i in half]
 
+_QUAD = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.0), (1.0, 0.5), (0.5, 1.0), (0.0, 0.5), (0.5, 0.5)]
+# corners below and above, mids below, above and between, centres of the faces -x +x -y +y -z +z, centre
+_HEXAHEDRON = [(x, y, z) for half, z in [(_QUAD[:4], 0.0), (_QUAD[:4], 1.0)] for x, y in half]
+_HEXAHEDRON += [(x, y, z) for z in (0.0, 1.0) for x, y in _QUAD[4:8]] + [(x, y, 0.5) for x, y in _QUAD[:4]]
+_HEXAHEDRON += [(0, 0.5, 0.5), (1, 0.5, 0.5), (0.5, 0, 0.5), (0.5, 1, 0.5), (0.5, 0.5, 0), (0.5, 0.5, 1), (0.5,) * 3]
+
 NODES: dict[str, Array] = {
     "triangle6": np.array(_TRIANGLE, dtype=float),
+    "quad9": np.array(_QUAD, dtype=float),
     "tetra10": np.array(_TETRA, dtype=float),
     "wedge18": np.array(_WEDGE, dtype=float),
+    "hexahedron27": np.array(_HEXAHEDRON, dtype=float),
 }
 _FLAT = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
 _POWERS = {
     "triangle6": _FLAT,
+    "quad9": [(i, j) for i in range(3) for j in range(3)],
     "tetra10": [(i, j, k) for i in range(3) for j in range(3) for k in range(3) if i + j + k <= 2],
     "wedge18": [(i, j, k) for i, j in _FLAT for k in range(3)],
+    "hexahedron27": [(i, j, k) for i in range(3) for j in range(3) for k in range(3)],
 }
 
 # mid-edge nodes with the corners that they lie between, and centres of quadrilaterals with their four corners
 MIDS: dict[str, dict[int, tuple[int, ...]]] = {
     "triangle6": {3: (0, 1), 4: (1, 2), 5: (2, 0)},
+    "quad9": {4: (0, 1), 5: (1, 2), 6: (2, 3), 7: (3, 0), 8: (0, 1, 2, 3)},
     "tetra10": {4: (0, 1), 5: (1, 2), 6: (2, 0), 7: (0, 3), 8: (1, 3), 9: (2, 3)},
     "wedge18": {6: (0, 1), 7: (1, 2), 8: (2, 0), 9: (3, 4), 10: (4, 5), 11: (5, 3), 12: (0, 3), 13: (1, 4), 14: (2, 5)}
     | {15: (0, 1, 4, 3), 16: (1, 2, 5, 4), 17: (2, 0, 3, 5)},
+    "hexahedron27": {8: (0, 1), 9: (1, 2), 10: (2, 3), 11: (3, 0), 12: (4, 5), 13: (5, 6), 14: (6, 7), 15: (7, 4)}
+    | {16: (0, 4), 17: (1, 5), 18: (2, 6), 19: (3, 7), 20: (0, 4, 7, 3), 21: (1, 2, 6, 5), 22: (0, 1, 5, 4)}
+    | {23: (2, 3, 7, 6), 24: (0, 3, 2, 1), 25: (4, 5, 6, 7), 26: (0, 1, 2, 3, 4, 5, 6, 7)},
 }
 
 
@@ -50,8 +64,12 @@ def quadrature(kind: str) -> tuple[Array, Array]:
     if kind == "triangle6":
         u, v = (g.ravel() for g in np.meshgrid(line, line, indexing="ij"))
         return np.column_stack([u, v * (1 - u)]), np.outer(weight, weight).ravel() * (1 - u)
+    if kind == "quad9":
+        return np.array([(x, y) for x in line for y in line]), np.outer(weight, weight).ravel()
     u, v, w = (g.ravel() for g in np.meshgrid(line, line, line, indexing="ij"))
     weights = np.einsum("i,j,k->ijk", weight, weight, weight).ravel()
+    if kind == "hexahedron27":
+        return np.column_stack([u, v, w]), weights
     if kind == "wedge18":
         return np.column_stack([u, v * (1 - u), w]), weights * (1 - u)
     return np.column_stack([u, v * (1 - u), w * (1 - u) * (1 - v)]), weights * (1 - u) ** 2 * (1 - v)

@@ -19,6 +19,7 @@ PointMap = Callable[[Array], Array]
 # Kuhn's six tetrahedra of a cube with corners x + 2 y + 4 z: their faces match those of the neighbouring cubes
 _KUHN: list[tuple[int, ...]] = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)]
 _WEDGES: list[tuple[int, ...]] = [(0, 1, 3, 4, 5, 7), (0, 3, 2, 4, 7, 6)]
+_HEXAHEDRA: list[tuple[int, ...]] = [(0, 1, 3, 2, 4, 5, 7, 6)]
 _TRIANGLES: list[tuple[int, ...]] = [(0, 1, 3), (0, 3, 2)]
 
 
@@ -63,18 +64,18 @@ def box(
     domain: str = "body",
     bending_walls: Mapping[str, float] | None = None,
 ) -> Mesh:
-    """Return 6 nx ny nz tetra10 or 2 nx ny nz wedge18 cells on a box from the origin, with the faces x0, x1, y0 .. z1.
+    """Return 6 tetra10, 2 wedge18 or 1 hexahedron27 for each of nx ny nz blocks of a box, with faces x0, x1, y0 .. z1.
 
-    lengths: edges of the box in mm. mapping, distortion: as for `rectangle`, on points (n, 3). Wedges stand along z and
-    are distorted in x and y only. Raises MeshError as `rectangle`.
+    The box stands on the origin. lengths: its edges in mm. mapping, distortion: as for `rectangle`, on points (n, 3).
+    Wedges stand along z and are distorted in x and y only. Raises MeshError as `rectangle`.
     """
-    if kind not in ("tetra10", "wedge18"):
-        raise MeshError(unknown_name("kind of cell of a box", kind, ("tetra10", "wedge18")))
+    all_pieces = {"tetra10": _KUHN, "wedge18": _WEDGES, "hexahedron27": _HEXAHEDRA}
+    if kind not in all_pieces:
+        raise MeshError(unknown_name("kind of cell of a box", kind, all_pieces))
     counts = _checked({"nx": nx, "ny": ny, "nz": nz})
     sizes = _lengths(dict(zip(("length x", "length y", "length z"), lengths, strict=True)))
     names = {(axis, end): f"{'xyz'[axis]}{end}" for axis in range(3) for end in range(2)}
-    pieces = _KUHN if kind == "tetra10" else _WEDGES
-    return _structured(kind, pieces, counts, sizes, names, mapping, distortion, "3d", domain, bending_walls)
+    return _structured(kind, all_pieces[kind], counts, sizes, names, mapping, distortion, "3d", domain, bending_walls)
 
 
 def quadratic(corner_points: Array, kind: str, corners: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:

@@ -24,11 +24,19 @@ CELL_FACES: dict[str, tuple[tuple[str, tuple[int, ...]], ...]] = {
         ("quad9", (1, 2, 5, 4, 7, 14, 10, 13, 16)),
         ("quad9", (2, 0, 3, 5, 8, 12, 11, 14, 17)),
     ),
+    "hexahedron27": (
+        ("quad9", (0, 3, 2, 1, 11, 10, 9, 8, 24)),
+        ("quad9", (4, 5, 6, 7, 12, 13, 14, 15, 25)),
+        ("quad9", (0, 1, 5, 4, 8, 17, 12, 16, 22)),
+        ("quad9", (1, 2, 6, 5, 9, 18, 13, 17, 21)),
+        ("quad9", (2, 3, 7, 6, 10, 19, 14, 18, 23)),
+        ("quad9", (3, 0, 4, 7, 11, 16, 15, 19, 20)),
+    ),
     "triangle6": (("line3", (0, 1, 3)), ("line3", (1, 2, 4)), ("line3", (2, 0, 5))),
 }
 
 # kind of face or cell -> number of corners, which come first in its nodes
-CORNERS = {"line3": 2, "triangle6": 3, "quad9": 4, "tetra10": 4, "wedge18": 6}
+CORNERS = {"line3": 2, "triangle6": 3, "quad9": 4, "tetra10": 4, "wedge18": 6, "hexahedron27": 8}
 
 Nodes = NDArray[np.int64]
 
