@@ -54,6 +54,24 @@ class NotConvergedError(PneumorphError):
         self.solution = solution
 
 
+def shortened(text: str, most: int = 60) -> str:
+    """Return text for a message, cut where it is longer than `most` characters.
+
+    >>> shortened("abcdef", 4)
+    'abc…'
+    """
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def quoted(text: str) -> str:
+    """Return text in quotes for a message: on one line, and not too long.
+
+    >>> quoted("80 kPa")
+    "'80 kPa'"
+    """
+    return repr(shortened(text))
+
+
 def unknown_name(kind: str, name: str, known: Iterable[str]) -> str:
     """Return the message for a name that is not known, with the nearest valid one.
 
@@ -63,4 +81,4 @@ def unknown_name(kind: str, name: str, known: Iterable[str]) -> str:
     names = sorted(known)
     near = get_close_matches(name, names, n=1)
     hint = f" did you mean '{near[0]}'?" if near else ""
-    return f"unknown {kind} '{name}':{hint} Allowed: {', '.join(names) if names else 'none'}"
+    return f"unknown {kind} {quoted(name)}:{hint} Allowed: {', '.join(names) if names else 'none'}"

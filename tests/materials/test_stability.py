@@ -121,3 +121,8 @@ def test_bad_questions_are_refused(call, kind, message):
     with pytest.raises(kind) as caught:
         call()
     assert str(caught.value).startswith(message)
+
+
+def test_an_instability_says_in_words_where_it_begins():
+    assert str(Instability("planar", 1.908)) == "unstable in planar tension from a stretch of 1.91 on"
+    assert str(Instability("uniaxial", 0.5)) == "unstable in uniaxial compression from a stretch of 0.5 on"

@@ -141,6 +141,8 @@ def test_captions_name_pressures_or_loads(balloon, beam):
     assert caption(balloon.states[0]) == "at rest"
     assert caption(balloon.states[-1]).endswith("kPa")
     assert caption(beam.states[-1]) == "0.0015 MPa"
+    assert caption(replace(beam.states[-1], clock=0.25)) == "0.25 s: 0.0015 MPa"
+    assert caption(replace(beam.states[0], clock=0.25)) == "0.25 s"
 
 
 @pytest.mark.usefixtures("no_pictures")

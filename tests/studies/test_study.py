@@ -290,3 +290,17 @@ def test_a_missing_or_broken_file_is_refused_with_its_path(tmp_path):
 def test_warnings_of_the_mesh_go_to_the_log(caplog):
     study(SPHERE + '[mesh]\nsize = "5 mm"' + PHASE).mesh()
     assert "thick wall 'wall'" in caplog.text
+
+
+def test_constants_that_soften_are_warned_of_with_the_stretch_at_which_they_do(caplog):
+    soft = SPHERE.replace('law = "neo-hookean"\nmu = "100 kPa"', 'law = "yeoh"\nc10 = "100 kPa"\nc20 = "-10 kPa"')
+    study(soft + '[mesh]\nsize = "coarse"' + PHASE).build()
+    assert "material of 'body': unstable in equibiaxial tension from a stretch of 1.51 on" in caplog.text
+
+
+def test_a_phase_takes_its_time_and_inertia_from_the_study():
+    timed = PHASE + 'duration = "20 ms"\ninertia = "moderate"\n'
+    (phase,) = study(SPHERE + 'density = "1100 kg/m3"' + timed).programme.phases
+    assert (phase.duration, phase.inertia) == (0.02, "moderate")
+    with pytest.raises(StudyError, match=r"phase\[1\].inertia"):
+        study(SPHERE + timed.replace("moderate", "fast"))

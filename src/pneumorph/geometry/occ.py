@@ -20,6 +20,7 @@ from netgen import meshing, occ, stl
 from numpy.typing import NDArray
 
 from pneumorph.errors import EngineError, GeometryError, MeshError
+from pneumorph.geometry.probe import check_survives
 from pneumorph.geometry.quiet import caught_output
 from pneumorph.geometry.stl import stl_bytes
 
@@ -185,12 +186,14 @@ class CadFile:
     area: float
 
 
-def read_cad(path: Path) -> CadFile:
+def read_cad(path: Path, *, probed: bool = False) -> CadFile:
     """Return the solids of a STEP or IGES file, in mm whatever the file's unit; solids that touch share the faces.
 
     Loose faces that close are sewn to a solid. Raises GeometryError for a file that cannot be read, holds no solid, or
-    holds solids that overlap.
+    holds solids that overlap. `probed`: the file is known not to end the process, see `probe`.
     """
+    if not probed:
+        check_survives(path)
     solids = _solids_of(path)
     for i, first in enumerate(solids):
         for j, second in enumerate(solids[:i]):

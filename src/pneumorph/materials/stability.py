@@ -27,6 +27,11 @@ class Instability(NamedTuple):
     mode: str
     stretch: float
 
+    def __str__(self) -> str:
+        """Return it as text: 'unstable in planar tension from a stretch of 1.91 on'."""
+        way = "tension" if self.stretch > 1.0 else "compression"
+        return f"unstable in {self.mode} {way} from a stretch of {self.stretch:.3g} on"
+
 
 def stability_limit(material: Material, mode: str, end: float) -> float | None:
     """Return the stretch between 1 and `end` at which a law becomes unstable; None if it is stable up to `end`.

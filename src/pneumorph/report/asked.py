@@ -8,8 +8,8 @@ from typing import Any
 
 from pneumorph.errors import InputError
 from pneumorph.geometry import Actuator
-from pneumorph.materials import Material, library
-from pneumorph.mechanics import Model, Programme
+from pneumorph.materials import LinearElastic, Material, Prony, library
+from pneumorph.mechanics import Model, Programme, Supply, Tube
 from pneumorph.mechanics.supports import Clamp, Prescribed, Symmetry
 from pneumorph.report.tables import Cell, Table
 from pneumorph.solution import Solution
@@ -43,24 +43,35 @@ def materials_table(materials: Mapping[str, Material]) -> Table:
     """Return the constants of each domain's material, with the source where it is one of the library."""
     rows: list[tuple[Cell | str, ...]] = []
     for domain, material in materials.items():
-        known = next((e for e in map(library.entry, library.names()) if e.material == material), None)
+        known = library.entry_of(material)
         law = f"{type(material).__name__}" + (f" ({known.name})" if known else "")
-        for number, item in enumerate(fields(material)):
+        constants = [item for item in fields(material) if item.name != "prony" or material.prony is not None]
+        for number, item in enumerate(constants):
             value = getattr(material, item.name)
-            kind = item.metadata.get("kind", "number")
             if item.name == "bulk" and value is None:
-                text = f"{show(material.bulk_modulus, kind)} (1000 × shear modulus)"
+                rule = "from the others" if isinstance(material, LinearElastic) else "1000 × shear modulus"
+                text = f"{show(material.bulk_modulus, 'stress')} ({rule})"
             else:
-                text = "not given" if value is None else show(float(value), kind)
+                text = "not given" if value is None else _constant(value, item.metadata.get("kind", "number"))
             if known is None:
                 flag: Cell | str = ""
             elif item.name in known.given:
                 flag = Cell("given", "good")
+            elif item.name in known.derived:
+                flag = Cell("derived", "good")
             else:
                 flag = Cell("assumed", "fair") if item.name in known.assumed else ""
             source = f"{known.source}. {known.note}" if known and number == 0 else ""
             rows.append((domain if number == 0 else "", law if number == 0 else "", item.name, text, flag, source))
     return Table("Materials", ("Domain", "Law", "Constant", "Value", "", "Source and note"), tuple(rows))
+
+
+def _constant(value: float | tuple[float, ...] | Prony, kind: str) -> str:
+    """Return a constant of a law with its unit: one number, the terms of a series, or a series of relaxations."""
+    if isinstance(value, Prony):
+        terms = zip(value.g, value.tau, strict=True)
+        return ", ".join(f"{show(share, 'number')} in {show(time, 'time')}" for share, time in terms)
+    return ", ".join(show(one, kind) for one in value) if isinstance(value, tuple) else show(float(value), kind)
 
 
 def programme_table(model: Model, programme: Programme) -> Table:
@@ -93,14 +104,22 @@ def _boundary_tables(model: Model) -> list[Table]:
     result = [Table("Supports and loads", ("Type", "Face", "Meaning"), tuple(supports))] if supports else []
     cavities = [
         (
-            cavity.name, type(cavity.supply).__name__.removesuffix("Supply").lower(), ", ".join(cavity.faces),
+            cavity.name, _with_numbers(cavity.supply), ", ".join(cavity.faces),
             Cell(show(model.surfaces[cavity.name].reference_volume, "volume"), number=True),
         )
         for cavity in model.cavities
     ]  # fmt: skip
     if cavities:
-        result.append(Table("Cavities", ("Cavity", "Supply sets", "Faces", "Volume at rest"), tuple(cavities)))
-    return result
+        result.append(Table("Cavities", ("Cavity", "Supply", "Faces", "Volume at rest"), tuple(cavities)))
+    tubes = tuple((" and ".join(tube.between), _with_numbers(tube)) for tube in model.tubes)
+    return [*result, Table("Tubes", ("Between", "Line"), tubes)] if tubes else result
+
+
+def _with_numbers(item: Supply | Tube) -> str:
+    """Return a supply or tube in words: 'flow, conductance 6 L/(min·bar), critical ratio 0.3'."""
+    values = {field: getattr(item, field.name) for field in fields(item) if "kind" in field.metadata}  # type: ignore[arg-type]
+    numbers = [f"{field.name.replace('_', ' ')} {show(v, field.metadata['kind'])}" for field, v in values.items()]
+    return ", ".join([type(item).__name__.removesuffix("Supply").lower(), *numbers])
 
 
 def _actuator(about: Mapping[str, Any]) -> Actuator | None:

@@ -8,12 +8,15 @@ from pneumorph.report.figures import Curve
 from pneumorph.solution import Solution
 
 _BESIDE = {"strain_energy", "supply_work", "load_work", "viscous_loss", "energy_error", "iterations"}
+_BESIDE |= {"clock", "kinetic_energy", "numerical_loss", "contact_energy", "friction_loss"}
 _BESIDE |= {"unstable_modes", "smallest_volume_ratio", "index", "phase", "time"}
 
 
 def driver(solution: Solution) -> str:
-    """Return the column to draw curves over: the largest pressure, else the first driven value, else the time."""
+    """Return the column to draw curves over: the clock, else the largest pressure, driven value or the time."""
     history = solution.history
+    if "clock" in history.keys:
+        return "clock"
     pressures = [key for key in history.keys if key.startswith("pressure:") and np.any(history.values(key))]
     if pressures:
         return max(pressures, key=lambda key: float(np.abs(history.values(key)).max()))
@@ -36,6 +39,10 @@ def default_curves(solution: Solution) -> list[Curve]:
         values = history.values(column.key)
         if column.kind != "angle" and np.isfinite(values).any() and np.ptp(values[np.isfinite(values)]) > 0.0:
             result.append(Curve(column.label.capitalize(), over, (column.key,)))
+    if over == "clock":
+        driven = [c for c in history.columns if c.key.startswith(("pressure:", "value:"))]
+        moved = [c for c in driven if history.values(c.key).any()]
+        result = [Curve(c.label.capitalize(), over, (c.key,)) for c in moved] + result
     if over.startswith("pressure:"):
         cavity = over.removeprefix("pressure:")
         result.append(Curve("Pressure and volume", f"added_volume:{cavity}", (over,)))

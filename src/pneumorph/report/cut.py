@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -10,6 +12,7 @@ import scipy.sparse as sparse
 from numpy.typing import NDArray
 
 from pneumorph.mesh.mesh import Mesh
+from pneumorph.mesh.reference import NODES
 from pneumorph.report.surface import Lines, Surface, combine
 
 Array = NDArray[np.float64]
@@ -135,7 +138,17 @@ def _tetrahedra(kind: str) -> Index:
     """Return the linear tetrahedra (t, 4), by local nodes, that fill a cell."""
     if kind == "tetra10":
         return np.array(_CORNERS + _MIDDLE)
-    result = []
+    result: list[Sequence[int]] = []
+    if kind == "hexahedron27":
+        number = {tuple(place): n for n, place in enumerate(np.rint(2.0 * NODES[kind]).astype(int).tolist())}
+        for corner in itertools.product((0, 1), repeat=3):
+            # six tetrahedra about the diagonal, one for each order in which its three steps are taken
+            for steps in itertools.permutations(range(3)):
+                path = [list(corner)]
+                for axis in steps:
+                    path.append([c + (i == axis) for i, c in enumerate(path[-1])])
+                result.append([number[tuple(place)] for place in path])
+        return np.array(result)
     for low, high in pairwise(_LAYERS):
         for part in _WEDGE_PARTS:
             place = [(0, 1, 2, 6, 7, 8).index(i) for i in part]

@@ -95,13 +95,16 @@ def curve_figure(history: History, curve: Curve, reported: Sequence[ReportedCurv
 def energy_figure(history: History) -> bytes:
     """Return energies and works over the time of the programme, with the error of their balance below."""
     figure, (axes, below) = _figure("Energy check", 2.2, 1.0)
-    time = history.values("time")
+    by_clock = "clock" in history.keys
+    time = history.values("clock" if by_clock else "time")
     work = history.values("supply_work") + history.values("load_work")
-    stored = history.values("strain_energy") + history.values("viscous_loss")
+    stored = history.kept_energy
     lines = [("work of supplies and loads", work, "-", 2.6, style.LINES[4])]
     lines += [("stored and lost", stored, "--", 1.6, style.LINES[0])]
+    if "kinetic_energy" in history.keys:
+        lines.append(("kinetic energy", history.values("kinetic_energy"), "-", 1.4, style.LINES[5]))
     parts = (("supply_work", "work of the supplies", style.LINES[2]), ("load_work", "work of loads", style.LINES[3]))
-    for key, label, colour in (*parts, ("viscous_loss", "lost in regularisation", style.LINES[1])):
+    for key, label, colour in (*parts, ("viscous_loss", "lost in viscosity", style.LINES[1])):
         values = history.values(key)
         if np.abs(values).max(initial=0.0) > 1e-9 * np.abs(work).max(initial=0.0) and not np.array_equal(values, work):
             lines.append((label, values, ":", 1.4, colour))
@@ -112,7 +115,7 @@ def energy_figure(history: History) -> bytes:
     below.plot(time, 100.0 * history.values("energy_error"), "-o", color=style.LINES[0], markersize=3)
     below.axhline(0.0, color=style.MUTED, linewidth=0.8)
     below.set_ylabel("error [%]")
-    below.set_xlabel("time of the programme [phases]")
+    below.set_xlabel("time [s]" if by_clock else "time of the programme [phases]")
     return _svg(figure)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneumorph.materials import USUAL_RANGE, instabilities
 from pneumorph.measures import LargestStress, MeanStress
 from pneumorph.mechanics import State
 from pneumorph.mesh import Quality
@@ -14,7 +15,8 @@ from pneumorph.units import printed_unit, show, to_printed
 _BALANCE = 0.02  # relative error of the energy balance that passes
 _LOSS = 0.01  # share of the work that regularisation may take
 _PLAIN = ("index", "phase", "time", "strain_energy", "supply_work", "load_work", "viscous_loss", "energy_error")
-_INSIDE = (*_PLAIN, "iterations", "unstable_modes", "smallest_volume_ratio")
+_SOLVER = ("iterations", "unstable_modes", "smallest_volume_ratio")
+_INSIDE = (*_PLAIN, "kinetic_energy", "numerical_loss", "contact_energy", "friction_loss", *_SOLVER)
 
 
 def marked_rows(solution: Solution) -> list[int]:
@@ -60,25 +62,39 @@ def checks_table(solution: Solution, quality: Quality) -> Table:
     """Return the checks of a run with their verdicts."""
     history = solution.history
     work = history.values("supply_work") + history.values("load_work")
-    kept = history.values("strain_energy") + history.values("viscous_loss")
+    kept = history.kept_energy
     largest = max(np.abs(work).max(initial=0.0), np.abs(kept).max(initial=0.0), 1e-300)
     balance = float(np.abs(work - kept).max(initial=0.0) / largest)
     loss = float(history.values("viscous_loss").max(initial=0.0) / largest)
+    # only of states in static equilibrium is stability known
+    moving = {phase.name for phase in solution.programme.phases if phase.inertia}
+    still = ~np.isin(history.values("phase"), list(moving))
     unstable = history.values("index")[np.nan_to_num(history.values("unstable_modes")) > 0].astype(int)
-    known = not np.isnan(history.values("unstable_modes")).any()
+    known = not np.isnan(history.values("unstable_modes")[still]).any()
     ratio = float(history.values("smallest_volume_ratio").min(initial=1.0))
     reached = float(history.values("time")[-1]) if len(history) else 0.0
     phases, jacobian = len(solution.programme.phases), quality.smallest_jacobian
-    stability = f"none in {len(history)} states" if known else "the linear solver cannot tell"
+    counted = f"{int(still.sum())} states" + (" without inertia" if moving else "")
+    stability = f"none in {counted}" if known else "the linear solver cannot tell"
     if len(unstable):
         stability = f"in {len(unstable)} of {len(history)} states: {_ranges(unstable.tolist())}"
+    least, most = USUAL_RANGE
+    stretches = f"stretches {least:g} to {most:g}"
+    softening = "; ".join(
+        f"{domain}: {instability}"
+        for domain, material in solution.model.materials.items()
+        for instability in instabilities(material, least, most)
+    )
+    viscous = any(material.prony is not None for material in solution.model.materials.values())
+    limit = "no limit: the material is viscous" if viscous else f"at most {_LOSS:.0%}"
     rows = [
         ("Programme", f"{reached:.4g} of {phases} phases", "to the end", solution.status is Status.DONE),
         ("Energy: work against stored and lost", f"{balance:.2%}", f"at most {_BALANCE:.0%}", balance <= _BALANCE),
-        ("Energy lost in regularisation", f"{loss:.2%} of the work", f"at most {_LOSS:.0%}", loss <= _LOSS),
+        ("Energy lost in viscosity", f"{loss:.2%} of the work", limit, viscous or loss <= _LOSS),
         ("Unstable modes", stability, "none", known and not len(unstable)),
         ("Smallest det F", f"{ratio:.3f}", "more than 0", ratio > 0.0),
         ("Smallest Jacobian ratio of the mesh", f"{jacobian:.3f}", "more than 0", jacobian > 0.0),
+        ("Stability of the materials (Drucker)", softening or "stable", stretches, not softening),
         ("Warnings of the mesh", str(len(quality.warnings) or "none"), "none", not quality.warnings),
     ]  # fmt: skip
     body = tuple(

@@ -19,7 +19,13 @@ _HIGHEST = 900
 
 
 def caption(state: State) -> str:
-    """Return the pressures, or else the driven values, of a state as text: 'cavity 60 kPa'."""
+    """Return time, if it counts, and pressures or else driven values of a state as text: '0.2 s: cavity 60 kPa'."""
+    clock = show(state.clock, "time", 3) if state.clock else ""
+    driven = _driven(state)
+    return ": ".join(part for part in (clock, driven) if part) or "at rest"
+
+
+def _driven(state: State) -> str:
     pressed = {name: p for name, p in state.pressure.items() if abs(p) > 1e-12}
     if pressed:
         texts = {name: show(p, "pressure", 3) for name, p in pressed.items()}
@@ -27,7 +33,7 @@ def caption(state: State) -> str:
         kinds = state.model.kinds
         texts = {name: show(v, kinds[name], 3) for name, v in state.values.items() if name in kinds and v}
     if not texts:
-        return "at rest"
+        return ""
     if len(set(texts.values())) == 1:
         names = f" in {len(texts)} cavities" if pressed and len(texts) > 1 else ""
         return next(iter(texts.values())) + names

@@ -6,6 +6,8 @@ from collections.abc import Iterable
 
 from pneumorph.errors import InputError, NameNotFoundError, StudyError, unknown_name
 from pneumorph.geometry import Actuator
+from pneumorph.mesh import Imported
+from pneumorph.studies.importing import ImportedSection, imported_body
 from pneumorph.studies.schema import (
     ALL_DOMAINS,
     TEMPLATES,
@@ -31,7 +33,9 @@ _MATERIALS = {
 
 
 def actuator_of(file: StudyFile) -> Actuator:
-    """Return the actuator; raises GeometryError for dimensions that do not fit."""
+    """Return the actuator; raises GeometryError for dimensions that do not fit, InputErrors for a file."""
+    if isinstance(file.actuator, ImportedSection):
+        return imported_body(file.actuator, file.mesh)
     dimensions = {name: getattr(file.actuator, name) for name in type(file.actuator).model_fields if name != "template"}
     return TEMPLATES[file.actuator.template](**dimensions)
 
@@ -50,19 +54,23 @@ def completed(file: StudyFile, actuator: Actuator) -> StudyFile:
     if support is None:
         clamp = [ClampSection(type="clamp", face="clamp")] if "clamp" in actuator.face_names else []
         support = (*clamp, *(SymmetrySection(type="symmetry", face=name) for name in mirrors))
+    if isinstance(actuator, Imported) and _needs_cavity(file):
+        actuator.require_cavity()
     cavity = [
         CavitySection(
             name=item.name,
-            faces=(item.name,) if item.faces is None else item.faces,
+            faces=_walls(actuator, item.name) if item.faces is None else item.faces,
             supply=item.supply,
             mirrors=mirrors if item.mirrors is None else item.mirrors,
         )
         for item in ([CavitySection(name=name) for name in actuator.cavities] if file.cavity is None else file.cavity)
     ]
     bounds = [(c.name, tuple(c.faces or ()), tuple(c.mirrors or ())) for c in cavity]
-    _check_faces(actuator, [(f"support[{i + 1}]", item.face) for i, item in enumerate(support)])
-    _check_faces(actuator, [(f"load[{i + 1}]", item.face) for i, item in enumerate(file.load)])
-    _check_faces(actuator, [(f"cavity '{name}'", face) for name, faces, planes in bounds for face in (*faces, *planes)])
+    known = actuator.face_names
+    _check_faces(known, [(f"support[{i + 1}]", item.face) for i, item in enumerate(support)])
+    _check_faces(known, [(f"load[{i + 1}]", item.face) for i, item in enumerate(file.load)])
+    known = tuple(dict.fromkeys((*known, *(face for name in actuator.cavities for face in _walls(actuator, name)))))
+    _check_faces(known, [(f"cavity '{name}'", face) for name, faces, planes in bounds for face in (*faces, *planes)])
     _check_once(
         [(face, f"cavity '{name}'") for name, faces, _ in bounds for face in faces],
         "a face bounds one cavity, and once only",
@@ -82,18 +90,19 @@ def completed(file: StudyFile, actuator: Actuator) -> StudyFile:
 
 
 def _materials(file: StudyFile, actuator: Actuator) -> dict[str, object]:
-    template = file.actuator.template
+    template = getattr(file.actuator, "template", None)
     for domain in file.material:
         if domain not in (*actuator.domains, ALL_DOMAINS):
             raise NameNotFoundError("material: " + unknown_name("domain", domain, actuator.domains))
     chosen = {}
     for domain in actuator.domains:
         section = file.material.get(domain, file.material.get(ALL_DOMAINS))
-        if section is None and domain in _MATERIALS.get(template, {}):
-            section = LibraryMaterial(name=_MATERIALS[template][domain])
+        if section is None and domain in _MATERIALS.get(template or "", {}):
+            section = LibraryMaterial(name=_MATERIALS[template or ""][domain])
         if section is None:
+            owner = f"template '{template}'" if template else "file"
             raise StudyError(
-                f"material: missing for the domain '{domain}' of the template '{template}'; give [material] a name "
+                f"material: missing for the domain '{domain}' of the {owner}; give [material] a name "
                 'from the library, such as name = "shore-a45-platinum", or a law with its constants'
             )
         chosen[domain] = section
@@ -122,10 +131,21 @@ def _axes(support: ClampSection | RollerSection | SymmetrySection | PrescribedSe
     return "xyz" if isinstance(support, ClampSection) else ("normal",)
 
 
-def _check_faces(actuator: Actuator, used: Iterable[tuple[str, str]]) -> None:
+def _walls(actuator: Actuator, cavity: str) -> tuple[str, ...]:
+    """Return the faces that bound a cavity unless the study says which."""
+    return actuator.cavity_faces(cavity) if cavity in actuator.cavities else (cavity,)
+
+
+def _needs_cavity(file: StudyFile) -> bool:
+    """Return whether the study has cavities, or drives what is neither a load nor a displacement."""
+    names = {GRAVITY, *(item.name for item in (*file.load, *(file.support or ())) if hasattr(item, "name"))}
+    return bool(file.cavity) or any(name not in names for phase in file.phase for name in phase.targets)
+
+
+def _check_faces(known: Iterable[str], used: Iterable[tuple[str, str]]) -> None:
     for owner, face in used:
-        if face not in actuator.face_names:
-            raise NameNotFoundError(f"{owner}: " + unknown_name("face", face, actuator.face_names))
+        if face not in known:
+            raise NameNotFoundError(f"{owner}: " + unknown_name("face", face, known))
 
 
 def _check_once(used: Iterable[tuple[str, str]], rule: str) -> None:

@@ -65,3 +65,8 @@ def measures_of(names: Sequence[str] | None, actuator: Actuator) -> tuple[Measur
             raise StudyError(f"measures: '{name}' is given {names.count(name)} times")
         measures.append(make(_AXES.get(type(actuator))))
     return tuple(measures)
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of all measures that a study file can ask for, in the order of the documentation."""
+    return tuple(_MEASURES)

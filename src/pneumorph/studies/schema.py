@@ -9,13 +9,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Union
 
-from pydantic import BeforeValidator, Discriminator, Field, PlainSerializer, Strict, Tag, ValidationInfo
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    PlainSerializer,
+    Strict,
+    Tag,
+    ValidationInfo,
+    WithJsonSchema,
+)
 
-from pneumorph.errors import StudyError, UnitError
+from pneumorph.errors import UnitError
 from pneumorph.geometry import Actuator, Finger, HexagonalPrism, PneuNet, ThickSphere, ThickTube
-from pneumorph.materials import Material, NeoHookean, Yeoh
+from pneumorph.materials import LAWS, Prony
 from pneumorph.mechanics import Settings
-from pneumorph.studies.section import LIBRARY, Section, quantity, section_of, write
+from pneumorph.studies.direction import Direction
+from pneumorph.studies.importing import ImportedSection
+from pneumorph.studies.json_types import AloneOrByName, any_quantity_schema, size_schema
+from pneumorph.studies.section import IMPORTED, LIBRARY, Section, quantity, section_of, write
+from pneumorph.studies.supplies import SUPPLY_SECTIONS, AtmosphereSection, SupplySection, TubeSection
 from pneumorph.units import parse
 
 TEMPLATES: dict[str, type[Actuator]] = {
@@ -25,32 +38,29 @@ TEMPLATES: dict[str, type[Actuator]] = {
     "thick-sphere": ThickSphere,
     "thick-tube": ThickTube,
 }
-LAWS: dict[str, type[Material]] = {"neo-hookean": NeoHookean, "yeoh": Yeoh}
 ALL_DOMAINS = "all"
 
 Axis = Literal["x", "y", "z"]
 
 
-def _direction(value: object) -> tuple[float, ...]:
-    """Return the components of "-z", or of a list of numbers."""
-    if isinstance(value, str) and value.lstrip("+-") in ("x", "y", "z") and len(value) <= 2:
-        sign = -1.0 if value.startswith("-") else 1.0
-        return tuple(sign if value[-1] == axis else 0.0 for axis in "xyz")
-    if isinstance(value, list | tuple) and all(isinstance(x, int | float) and not isinstance(x, bool) for x in value):
-        return tuple(map(float, value))
-    raise StudyError(f"direction = {value!r}: expected an axis such as '-z', or a list of 3 numbers")
-
-
-Direction = Annotated[tuple[float, ...], BeforeValidator(_direction)]
 Names = Annotated[tuple[str, ...], Strict(False)]
+# read when it is known what it drives, and so which unit it must have
+TargetText = Annotated[str, WithJsonSchema(any_quantity_schema())]
 
 
 class LibraryMaterial(Section):
-    """A material of the library by name; `bulk` and `density` replace what the library says."""
+    """A material of the library.
+
+    name: name in the library; upper and lower case are alike.
+    bulk: bulk modulus, in place of the library's.
+    density: mass density, in place of the library's; gravity needs one.
+    prony: relaxation, which the library does not give.
+    """
 
     name: str
     bulk: quantity("stress") | None = None  # type: ignore[valid-type]
     density: quantity("density") | None = None  # type: ignore[valid-type]
+    prony: section_of(Prony) | None = None  # type: ignore[valid-type]
 
 
 def law(value: Any) -> str:
@@ -59,9 +69,20 @@ def law(value: Any) -> str:
     return str(name)
 
 
-_ACTUATORS = tuple(section_of(owner, template=name) for name, owner in TEMPLATES.items())
+def template(value: Any) -> str | None:
+    """Return which section reads an actuator: that of its template, or that of a file."""
+    if isinstance(value, ImportedSection) or (isinstance(value, Mapping) and "file" in value):
+        return IMPORTED
+    name = value.get("template") if isinstance(value, Mapping) else getattr(value, "template", None)
+    return None if name is None else str(name)
+
+
+_ACTUATORS = tuple(Annotated[section_of(owner, template=name), Tag(name)] for name, owner in TEMPLATES.items())
 _MATERIALS = tuple(Annotated[section_of(owner, law=name), Tag(name)] for name, owner in LAWS.items())
-ActuatorSection: Any = Annotated[Union[_ACTUATORS], Field(discriminator="template")]  # noqa: UP007
+ActuatorSection: Any = Annotated[
+    Union[(*_ACTUATORS, Annotated[ImportedSection, Tag(IMPORTED)])],
+    Discriminator(template),
+]
 MaterialSection: Any = Annotated[
     Union[(Annotated[LibraryMaterial, Tag(LIBRARY)], *_MATERIALS)],
     Discriminator(law),
@@ -89,30 +110,50 @@ def _write_size(value: float | str) -> str:
 
 
 class MeshSection(Section):
-    """size: largest edge, "automatic" or "coarse"; the others as in `mesh.generate`."""
+    """How fine the mesh is.
 
-    size: Annotated[float | str, BeforeValidator(_read_size), PlainSerializer(_write_size)] = "automatic"
+    size: largest edge, or "automatic" for the template's choice, "coarse" for the fewest cells that keep the shape.
+    wall_size: largest edge on the cavity faces, if smaller than `size`.
+    grading: how fast the size may change, above 0 (slowly) to 1; automatic 0.8.
+    detail: how much short edges refine their surroundings, 1 for a cell no larger than the edge; automatic 1, coarse
+        0.2.
+    """
+
+    size: Annotated[
+        float | str, BeforeValidator(_read_size), PlainSerializer(_write_size), WithJsonSchema(size_schema())
+    ] = "automatic"
     wall_size: quantity("length") | None = None  # type: ignore[valid-type]
     grading: float | None = None
     detail: float | None = None
 
 
 class GravitySection(Section):
-    """Weight; ramped up in a phase of its own, before the others, unless a phase names it."""
+    """Weight; ramped up in a phase of its own, before the others, unless a phase names it.
+
+    direction: which way things fall, an axis with its sign or three numbers.
+    acceleration: how strong it is.
+    """
 
     direction: Direction = (0.0, 0.0, -1.0)
     acceleration: quantity("acceleration") = 9810.0  # type: ignore[valid-type]
 
 
 class ClampSection(Section):
-    """All displacements of a face are zero."""
+    """All displacements of a face are zero.
+
+    face: name of the face.
+    """
 
     type: Literal["clamp"]
     face: str
 
 
 class RollerSection(Section):
-    """The displacement of a face along one axis is zero."""
+    """The displacement of a face along one axis is zero.
+
+    face: name of the face.
+    axis: axis along which it does not move.
+    """
 
     type: Literal["roller"]
     face: str
@@ -120,14 +161,22 @@ class RollerSection(Section):
 
 
 class SymmetrySection(Section):
-    """A plane face in a mirror plane of the whole."""
+    """A plane face in a mirror plane of the whole.
+
+    face: name of the face.
+    """
 
     type: Literal["symmetry"]
     face: str
 
 
 class PrescribedSection(Section):
-    """A face is moved along one axis by a length that the phases set under `name`."""
+    """A face is moved along one axis by a length that the phases set under `name`.
+
+    face: name of the face.
+    axis: axis along which it is moved; it is free across it.
+    name: name under which the phases set the length.
+    """
 
     type: Literal["prescribed"]
     face: str
@@ -136,7 +185,12 @@ class PrescribedSection(Section):
 
 
 class ForceSection(Section):
-    """A force spread evenly over a face; the phases set its size in N under `name`."""
+    """A force spread evenly over a face, of fixed direction.
+
+    face: name of the face.
+    direction: an axis with its sign, or three numbers.
+    name: name under which the phases set the force.
+    """
 
     type: Literal["force"]
     face: str
@@ -145,7 +199,12 @@ class ForceSection(Section):
 
 
 class TractionSection(Section):
-    """A force per area on a face; the phases set it in MPa under `name`."""
+    """A force per undeformed area on a face, of fixed direction.
+
+    face: name of the face.
+    direction: an axis with its sign, or three numbers.
+    name: name under which the phases set the stress.
+    """
 
     type: Literal["traction"]
     face: str
@@ -153,27 +212,48 @@ class TractionSection(Section):
     name: str
 
 
+PRESSURE = SUPPLY_SECTIONS["pressure"].model_validate({"type": "pressure"})
+
+
 class CavitySection(Section):
-    """A cavity; by default its faces bear its name, and it may lie open in all symmetry planes."""
+    """A cavity and what fills it.
+
+    name: name under which the phases set the target of its supply.
+    faces: names of all its faces; left out, the face of its own name.
+    supply: what fills it, and so what the phases set: the gauge pressure (negative for a vacuum), the volume of liquid
+        added, the mass of gas added, nothing where it is sealed with the air in it, or by a table with type "flow" the
+        gauge pressure of a source behind a valve or tube.
+    mirrors: symmetry planes in which it may lie open; left out, all of the actuator.
+    """
 
     name: str
     faces: Names | None = None
-    supply: Literal["pressure", "volume"] = "pressure"
+    supply: SupplySection = Field(default_factory=lambda: PRESSURE)
     mirrors: Names | None = None
 
 
 class PhaseSection(Section):
-    """One ramp. states_at: name of a target -> values on the way at which a state is wanted exactly.
+    """One ramp: every target goes to its value, what is not named stays where it is; all starts from zero.
 
-    The increments are fractions of the phase.
+    name: name in progress and report; left out, phase_1 and so on.
+    targets: name of a cavity, load, displacement or "gravity" -> value at the end of the phase.
+    states_at: name of a target -> values on the way at which a state is wanted exactly.
+    first_increment: first increment as a fraction of the phase.
+    largest_increment: largest increment as a fraction of the phase.
+    smallest_increment: fraction of the phase under which an increment is not cut any further.
+    duration: time that the phase takes; inertia and flow need one.
+    inertia: "transient" keeps the swinging, "moderate" damps its high frequencies, "quasi-static" brings the body to
+        rest; left out, the phase has no inertia.
     """
 
     name: str | None = None
-    targets: dict[str, str]
-    states_at: dict[str, Annotated[tuple[str, ...], Strict(False)]] = Field(default_factory=dict)
+    targets: dict[str, TargetText]
+    states_at: dict[str, Annotated[tuple[TargetText, ...], Strict(False)]] = Field(default_factory=dict)
     first_increment: float = 0.05
     largest_increment: float = 0.2
     smallest_increment: float = 1e-5
+    duration: quantity("time") | None = None  # type: ignore[valid-type]
+    inertia: Literal["transient", "moderate", "quasi-static"] | None = None
 
 
 SupportSection: Any = Annotated[
@@ -184,22 +264,42 @@ SolverSection: Any = section_of(Settings, "SolverSection")
 
 
 class StudyFile(Section):
-    """A whole study file, in the order in which it is written out."""
+    """A study of a soft pneumatic actuator, its sections in the order in which they are written out.
+
+    title: title of the report; left out, the name of the file.
+    measures: what is measured in every state; left out, both angles where there are a clamp and a tip.
+    actuator: the template and its dimensions; what is left out has the template's value.
+    material: one material for all domains, or a table for each domain; left out, that of the published actuator.
+    mesh: how fine the mesh is.
+    gravity: weight; left out, there is none.
+    support: how the body is held; left out, "clamp" is clamped and planes of symmetry are kept.
+    load: forces and tractions that the phases drive.
+    cavity: cavities and their supplies; left out, every cavity of the template by pressure.
+    tube: tubes between cavities that are filled with gas.
+    atmosphere: pressure and temperature outside, and the gas.
+    phase: what is driven how far, one ramp after the other.
+    solver: how the solver steps and when it is content.
+    """
 
     title: str = ""
     measures: Names | None = None
     actuator: ActuatorSection
-    material: Annotated[dict[str, MaterialSection], BeforeValidator(_by_domain)] = Field(default_factory=dict)
+    material: Annotated[dict[str, MaterialSection], BeforeValidator(_by_domain), AloneOrByName()] = Field(
+        default_factory=dict
+    )
     mesh: MeshSection = Field(default_factory=MeshSection)
     gravity: GravitySection | None = None
     support: Annotated[tuple[SupportSection, ...], Strict(False)] | None = None
     load: Annotated[tuple[LoadSection, ...], Strict(False)] = ()
     cavity: Annotated[tuple[CavitySection, ...], Strict(False)] | None = None
+    tube: Annotated[tuple[TubeSection, ...], Strict(False)] = ()
+    atmosphere: AtmosphereSection = Field(default_factory=AtmosphereSection)
     phase: Annotated[tuple[PhaseSection, ...], Strict(False)] = ()
     solver: SolverSection = Field(default_factory=SolverSection)
 
 
 # names of union members that pydantic adds to the path of an error
 TAGS = {
-    *TEMPLATES, *LAWS, ALL_DOMAINS, LIBRARY, "clamp", "roller", "symmetry", "prescribed", "force", "traction",
+    *TEMPLATES, IMPORTED, *LAWS, ALL_DOMAINS, LIBRARY, "clamp", "roller", "symmetry", "prescribed", "force", "traction",
+    *SUPPLY_SECTIONS,
 }  # fmt: skip

@@ -3,33 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, Field, fields
+from dataclasses import MISSING, Field, fields, is_dataclass
 from functools import cache
 from types import UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, Union, get_args, get_origin, get_type_hints
 
 from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    GetJsonSchemaHandler,
     PlainSerializer,
+    Strict,
     ValidationError,
     ValidationInfo,
+    WithJsonSchema,
     create_model,
     model_validator,
 )
+from pydantic_core import CoreSchema
 
-from pneumorph.errors import InputError, StudyError, UnitError, unknown_name
+from pneumorph.errors import InputError, StudyError, UnitError, shortened, unknown_name
+from pneumorph.studies.describing import meanings, summary
+from pneumorph.studies.json_types import quantity_schema, without_null
 from pneumorph.units import parse, show
 
 # tag of the material section that has no law of its own
 LIBRARY = "library"
+# tag of the actuator section that has no template
+IMPORTED = "imported"
 
 
 class Section(BaseModel):
     """A table of a study file: frozen, and every key must be known."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, hide_input_in_errors=True)
+    # the class whose fields and docstring this section takes over
+    _owner: ClassVar[type | None] = None
 
     @model_validator(mode="before")
     @classmethod
@@ -39,6 +49,26 @@ class Section(BaseModel):
                 if key not in cls.model_fields:
                     raise StudyError(unknown_name("key", str(key), cls.model_fields))
         return table
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """Return the JSON schema with the meaning of every key, and defaults as they stand in a file."""
+        reference = handler(core)
+        schema = handler.resolve_ref_schema(reference)
+        schema["description"] = summary(cls._owner or cls)
+        says = meanings(cls._owner or cls)
+        defaults = cls.model_construct().model_dump(mode="json", exclude_none=True, warnings=False)
+        for key, given in schema["properties"].items():
+            item = without_null(given)
+            kind = item.get("description")
+            if "const" in item:  # tells the sections of a union apart
+                item["description"] = schema["description"]
+            if key in says:
+                item["description"] = f"{says[key]}; {kind}" if kind else says[key]
+            if key in defaults:
+                item["default"] = defaults[key]
+            schema["properties"][key] = item
+        return reference
 
 
 @cache
@@ -51,7 +81,12 @@ def quantity(kind: str) -> Any:
             return value
         return parse(value, kind, info.field_name or "value")  # type: ignore[arg-type]
 
-    return Annotated[float, BeforeValidator(read), PlainSerializer(lambda value: write(value, kind))]
+    return Annotated[
+        float,
+        BeforeValidator(read),
+        PlainSerializer(lambda value: write(value, kind)),
+        WithJsonSchema(quantity_schema(kind)),
+    ]
 
 
 def write(value: float, kind: str) -> str:
@@ -62,19 +97,29 @@ def write(value: float, kind: str) -> str:
 def section_of(owner: type, name: str | None = None, **tag: str) -> type[Section]:
     """Return the section whose keys are the fields of a dataclass, typed by the unit `kind` in their metadata.
 
-    A `tag` such as template="finger" adds a key with this one value, which tells the sections of a union apart.
+    A field with `many` in its metadata is a list, one that holds a dataclass is a table of its own. A `tag` such as
+    template="finger" adds a key with this one value, which tells the sections of a union apart.
     """
     keys: dict[str, Any] = {key: (Literal[value], ...) for key, value in tag.items()}
     hints = get_type_hints(owner)
     for item in fields(owner):
         if item.init:
             keys[item.name] = (_type_of(item, hints[item.name]), ... if item.default is MISSING else item.default)
-    return create_model(name or owner.__name__, __base__=Section, **keys)
+    section = create_model(name or owner.__name__, __base__=Section, **keys)
+    section._owner = owner
+    return section
 
 
 def _type_of(item: Field[Any], hint: Any) -> Any:
     kind = item.metadata.get("kind")
-    if kind is None or kind == "count":
+    if item.metadata.get("many"):
+        one: Any = float if kind == "number" else quantity(str(kind))
+        return Annotated[tuple[one, ...], Strict(False)]
+    if kind is None:
+        parts = get_args(hint)
+        sections = (section_of(part) if is_dataclass(part) and isinstance(part, type) else part for part in parts)
+        return Union[tuple(sections)] if any(map(is_dataclass, parts)) else hint  # noqa: UP007
+    if kind in ("count", "number"):
         return hint
     optional = get_origin(hint) in (Union, UnionType) and type(None) in get_args(hint)
     return quantity(kind) | None if optional else quantity(kind)
@@ -91,7 +136,9 @@ def refusal(error: ValidationError, tags: Iterable[str]) -> InputError:
 
 
 def _line(item: Any, hidden: set[str]) -> str:
-    place = _path([part for part in item["loc"] if part not in hidden])
+    # names that the user gave may be those of tags
+    path = zip(item["loc"], ("", *item["loc"]), strict=False)
+    place = _path([part for part, before in path if part not in hidden or before in ("faces", "caps")])
     kind, context, value = item["type"], item.get("ctx", {}), item.get("input")
     if kind == "value_error":  # raised by ourselves: the message is complete
         text = str(context["error"])
@@ -101,13 +148,15 @@ def _line(item: Any, hidden: set[str]) -> str:
     if kind == "missing":
         return f"{place}: missing"
     if kind == "union_tag_not_found":
-        return f"{place}: missing {context['discriminator']}"
+        key = context["discriminator"].strip("'()")
+        return f"{place}: missing '{key}'" + (" or 'file'" if key == "template" else "")
     if kind == "union_tag_invalid":
         key = context["discriminator"].strip("'()")
         expected = [name.strip("' ") for name in context["expected_tags"].split(",")]
-        expected = [name for name in expected if name != LIBRARY]
+        expected = [name for name in expected if name not in (LIBRARY, IMPORTED)]
         return f"{place}: " + unknown_name(key, str(context["tag"]), expected)
-    return f"{place or 'study'} = {value!r}: {item['msg'][0].lower()}{item['msg'][1:]}"
+    message = item["msg"].replace("a valid tuple", "a list")
+    return f"{place or 'study'} = {shortened(repr(value))}: {message[0].lower()}{message[1:]}"
 
 
 def _path(parts: list[str | int]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,8 +14,9 @@ from pydantic import ValidationError
 
 from pneumorph.errors import InputError, NameNotFoundError, StudyError, unknown_name
 from pneumorph.geometry import Actuator
-from pneumorph.materials import Material, library
+from pneumorph.materials import LAWS, USUAL_RANGE, Material, Prony, instabilities, library
 from pneumorph.mechanics import (
+    Atmosphere,
     Cavity,
     Clamp,
     Force,
@@ -23,27 +24,26 @@ from pneumorph.mechanics import (
     Model,
     Phase,
     Prescribed,
-    PressureSupply,
     Programme,
     Roller,
     Settings,
-    Supply,
     Symmetry,
     Traction,
-    VolumeSupply,
+    Tube,
 )
 from pneumorph.mechanics.loads import Load
+from pneumorph.mechanics.supplies.checks import check_driven, check_phases, check_tubes
 from pneumorph.mechanics.supports import Support
-from pneumorph.mesh import Mesh, generate, inspect
+from pneumorph.mesh import Imported, Mesh, generate, inspect
 from pneumorph.studies.defaults import GRAVITY, actuator_of, completed
 from pneumorph.studies.measuring import Measure, measures_of
-from pneumorph.studies.schema import LAWS, TAGS, LibraryMaterial, PhaseSection, StudyFile
+from pneumorph.studies.schema import TAGS, LibraryMaterial, PhaseSection, StudyFile
 from pneumorph.studies.section import refusal
+from pneumorph.studies.supplies import supply_of, tube_of
 from pneumorph.studies.writing import to_toml
 from pneumorph.units import parse, show
 
 _log = logging.getLogger(__name__)
-_SUPPLIES: dict[str, Supply] = {"pressure": PressureSupply(), "volume": VolumeSupply()}
 _SUPPORTS = {"clamp": Clamp, "roller": Roller, "symmetry": Symmetry, "prescribed": Prescribed}
 _LOADS: dict[str, Any] = {"force": Force, "traction": Traction}
 
@@ -72,7 +72,13 @@ class Study:
     def __post_init__(self) -> None:
         object.__setattr__(self, "file", completed(self.file, self.actuator))
         _ = self.materials, self.supports, self.loads, self.cavities, self.measures
-        _check_driven(self.kinds, self.programme)
+        supplies = {cavity.name: cavity.supply for cavity in self.cavities}
+        check_tubes(self.tubes, supplies)
+        for phase in self.file.phase:
+            for name in phase.targets:
+                check_driven(str(phase.name), name, supplies)
+        check_phases(self.programme.phases, supplies, self.tubes, self.atmosphere)
+        _check_driven([name for name in self.kinds if name not in supplies], self.programme)
         if self.file.gravity is not None:
             for domain, material in self.materials.items():
                 if material.density is None:
@@ -113,16 +119,26 @@ class Study:
     def cavities(self) -> tuple[Cavity, ...]:
         """The cavities with their supplies."""
         return tuple(
-            Cavity(item.name, item.faces or (), _SUPPLIES[item.supply], item.mirrors or ())
+            Cavity(item.name, item.faces or (), supply_of(item.supply, item.name), item.mirrors or ())
             for item in self.file.cavity or ()
         )
+
+    @cached_property
+    def tubes(self) -> tuple[Tube, ...]:
+        """Tubes between cavities."""
+        return tuple(tube_of(item, number) for number, item in enumerate(self.file.tube, 1))
+
+    @cached_property
+    def atmosphere(self) -> Atmosphere:
+        """What is outside."""
+        return Atmosphere(**_fields(self.file.atmosphere))
 
     @cached_property
     def kinds(self) -> dict[str, str]:
         """Name -> unit kind of all that the phases can drive; raises InputError for a name given twice."""
         kinds: dict[str, str] = {}
         moved = [support for support in self.supports if isinstance(support, Prescribed)]
-        pairs = [(item.name, item.supply.kind) for item in self.cavities]
+        pairs = [(item.name, item.supply.kind) for item in self.cavities if item.supply.kind is not None]
         for name, kind in [*pairs, *((item.name, item.kind) for item in (*self.loads, *moved))]:
             if name in kinds:
                 raise InputError(f"the name '{name}' is given to more than one cavity, load or displacement")
@@ -150,6 +166,9 @@ class Study:
 
     def mesh(self) -> Mesh:
         """Return the mesh; what its quality check warns of goes to the log. Raises MeshError."""
+        if isinstance(self.actuator, Imported):
+            for note in self.actuator.notes:
+                _log.warning("%s", note)
         section = self.file.mesh
         size = section.size if isinstance(section.size, float) else None
         mesh = generate(
@@ -166,15 +185,22 @@ class Study:
 
     def build(self) -> Problem:
         """Return model, programme, measures and settings; meshes. Raises MeshError, LeakingCavityError."""
-        model = Model(self.mesh(), self.materials, self.supports, self.loads, self.cavities)
+        for domain, material in self.materials.items():
+            for instability in instabilities(material, *USUAL_RANGE):
+                _log.warning("material of '%s': %s", domain, instability)
+        model = Model(
+            self.mesh(), self.materials, self.supports, self.loads, self.cavities,
+            tubes=self.tubes, atmosphere=self.atmosphere,
+        )  # fmt: skip
         return Problem(model, self.programme, self.measures, self.settings)
 
     def resolved(self) -> dict[str, Any]:
         """Return the study as plain data with every default written out, quantities as text with units."""
         data = self.file.model_dump(exclude_none=True)
         data["phase"] = [{key: value for key, value in item.items() if value != {}} for item in data["phase"]]
-        if not data["load"]:
-            del data["load"]
+        for key in ("load", "tube"):
+            if not data[key]:
+                del data[key]
         return data | {"title": self.title, "measures": [measure.name for measure in self.measures]}
 
     def resolved_text(self) -> str:
@@ -196,15 +222,18 @@ def load_study(path: Path | str) -> Study:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise StudyError(f"'{path}' is not a TOML file: {error}") from error
     try:
-        return study_from(table, path.stem)
+        return study_from(table, path.stem, path.parent)
     except InputError as error:
         raise type(error)(f"{path}: {error}") from error
 
 
-def study_from(table: Mapping[str, Any], name: str) -> Study:
-    """Return the study with the contents of a study file as plain data (quantities as text with units)."""
+def study_from(table: Mapping[str, Any], name: str, folder: Path | None = None) -> Study:
+    """Return the study with the contents of a study file as plain data (quantities as text with units).
+
+    folder: where files that the study names are sought; None: where the program runs.
+    """
     try:
-        file = StudyFile.model_validate(table, context={"quantities": "text"})
+        file = StudyFile.model_validate(table, context={"quantities": "text", "folder": folder or Path()})
     except ValidationError as error:
         raise refusal(error, TAGS) from None
     return Study(name, file)
@@ -215,10 +244,14 @@ def _fields(section: Any, *but: str) -> dict[str, Any]:
 
 
 def _material(section: Any) -> Material:
+    constants = _fields(section, "law", "name", "prony")
+    if section.prony is not None:
+        constants["prony"] = Prony(**_fields(section.prony))
     if not isinstance(section, LibraryMaterial):
-        return LAWS[section.law](**_fields(section, "law"))
-    changes = {name: value for name, value in _fields(section, "name").items() if value is not None}
-    return replace(library.material(section.name), **changes)
+        return LAWS[section.law](**constants)
+    changes = {name: value for name, value in constants.items() if value is not None}
+    found = library.material(section.name)
+    return replace(found, **changes) if changes else found
 
 
 def _phase(section: PhaseSection, kinds: Mapping[str, str], start: Mapping[str, float]) -> Phase:
@@ -250,11 +283,13 @@ def _phase(section: PhaseSection, kinds: Mapping[str, str], start: Mapping[str, 
         section.first_increment,
         section.largest_increment,
         section.smallest_increment,
+        section.duration,
+        section.inertia,
     )
 
 
-def _check_driven(kinds: Mapping[str, str], programme: Programme) -> None:
+def _check_driven(names: Iterable[str], programme: Programme) -> None:
     driven = {name for phase in programme.phases for name in phase.targets}
-    for name, kind in kinds.items():
-        if name not in driven and kind not in ("pressure", "volume"):
+    for name in names:
+        if name not in driven:
             raise StudyError(f"'{name}' is in the study, but no phase drives it")

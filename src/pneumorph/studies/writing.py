@@ -13,16 +13,16 @@ def to_toml(table: Mapping[str, Any], path: tuple[str, ...] = ()) -> str:
     Tables stand on their own lines down to the level below the arrays of tables, where they are written inline.
     """
     entries = {key: value for key, value in table.items() if value is not None}
-    lines = [f"{_key(k)} = {_value(v)}" for k, v in entries.items() if not _is_table(v) and not _is_array(v)]
+    lines = [f"{toml_key(k)} = {toml_value(v)}" for k, v in entries.items() if not _is_table(v) and not _is_array(v)]
     for key, value in entries.items():
-        name = ".".join(map(_key, (*path, key)))
+        name = ".".join(map(toml_key, (*path, key)))
         if _is_table(value):
             inner = to_toml(value, (*path, key))
             only_tables = value and all(_is_table(v) for v in value.values() if v is not None)
             lines.append((inner if only_tables else f"\n[{name}]\n{inner}").rstrip())
         elif _is_array(value):
             for item in value:
-                rows = [f"{_key(k)} = {_value(v)}" for k, v in item.items() if v is not None]
+                rows = [f"{toml_key(k)} = {toml_value(v)}" for k, v in item.items() if v is not None]
                 lines.append("\n".join(["", f"[[{name}]]", *rows]))
     return "\n".join(lines) + "\n"
 
@@ -35,11 +35,13 @@ def _is_array(value: object) -> bool:
     return isinstance(value, list | tuple) and len(value) > 0 and all(_is_table(item) for item in value)
 
 
-def _key(key: str) -> str:
-    return key if key.replace("_", "").replace("-", "").isalnum() and key.isascii() else _value(key)
+def toml_key(key: str) -> str:
+    """Return a key as TOML writes it: bare where that is allowed."""
+    return key if key.replace("_", "").replace("-", "").isalnum() and key.isascii() else toml_value(key)
 
 
-def _value(value: object) -> str:
+def toml_value(value: object) -> str:
+    """Return plain data on one line; raises TypeError for what TOML cannot say."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float):
@@ -47,8 +49,8 @@ def _value(value: object) -> str:
     if isinstance(value, str):  # JSON's escapes are TOML's, but for DEL
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Mapping):
-        inner = ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items() if v is not None)
+        inner = ", ".join(f"{toml_key(k)} = {toml_value(v)}" for k, v in value.items() if v is not None)
         return f"{{ {inner} }}" if inner else "{}"
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(map(_value, value)) + "]"
+        return "[" + ", ".join(map(toml_value, value)) + "]"
     raise TypeError(f"no TOML for {value!r}")
