@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 import pneumorph
-from pneumorph.cli import doctor, report, reproduce, run
+from pneumorph.cli import doctor, export, fit, materials, mesh, new, report, reproduce, run, schema, sweep
 from pneumorph.cli.output import BAD_INPUT, DONE, FAILED, INTERRUPTED, complain
 from pneumorph.errors import InputError, PneumorphError, StorageError
 from pneumorph.threads import thread_count
@@ -63,8 +63,15 @@ def common(
 
 
 app.command("run")(run.run)
+app.command("sweep")(sweep.sweep)
 app.command("reproduce")(reproduce.reproduce)
 app.command("report")(report.report)
+app.command("export")(export.export)
+app.command("new")(new.new)
+app.command("schema")(schema.schema)
+app.command("materials")(materials.materials)
+app.command("fit")(fit.fit)
+app.command("mesh")(mesh.mesh)
 app.command("doctor")(doctor.doctor)
 
 

@@ -35,11 +35,16 @@ def report_reproduction(solution: Solution, chosen: Reproduction, study: Study) 
 
 def report_folder(folder: Path) -> Path:
     """Write the report of a run folder anew; return its path. Raises StorageError for a folder without a run."""
+    from pneumorph.cli.rolling import is_rolling, report_rolling
+
+    if is_rolling(folder):
+        return report_rolling(folder)
     solution = Solution.open(folder)
     name = solution.about.get("reproduction")
     if name is None:
         return report_study(solution)
-    if name not in names():
+    chosen = reproduction(name) if name in names() else None
+    if not isinstance(chosen, Reproduction):
         raise StorageError(f"'{folder}' is a run of the reproduction '{name}', which this version does not know")
     study = study_from(solution.about["study"], solution.about["name"])
-    return report_reproduction(solution, reproduction(name), study)
+    return report_reproduction(solution, chosen, study)

@@ -8,12 +8,20 @@ from typing import Annotated
 
 import typer
 
+from pneumorph.errors import InputError
+
 
 def reproduce(
     name: Annotated[str | None, typer.Argument(help="Name of the system; leave it out for a list.")] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Coarse mesh, and stops early.")] = False,
     out: Annotated[Path | None, typer.Option(help="Run folder. Default: runs/<name>, with -quick if it is.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the last state in the folder.")] = False,
+    part: Annotated[str | None, typer.Option(help="Part of a system in parts; soft-wheel: rigid.")] = None,
+    video: Annotated[str | None, typer.Option(help="Part rigid: draw a film of this run, as curved-3_ramp.")] = None,
+    terrain: Annotated[Path | None, typer.Option(help="Part rigid: a further terrain, grey-scale image.")] = None,
+    relief: Annotated[str | None, typer.Option(help="Height of white in that image, such as '400 mm'.")] = None,
+    scheduler: Annotated[str | None, typer.Option(help="Part rigid: address of a Dask scheduler.")] = None,
+    radius: Annotated[str | None, typer.Option(help="Part rigid: radius of the wheels. Default: 140 mm.")] = None,
 ) -> None:
     """Rebuild a published system, solve it and compare it with the reported data."""
     from pneumorph.studies import reproductions
@@ -22,12 +30,29 @@ def reproduce(
         for known in reproductions.names():
             item = reproductions.reproduction(known)
             typer.echo(f"{known}: {item.title}. {item.source}")
+            if isinstance(item, reproductions.SystemInParts):
+                for key, meaning in item.parts.items():
+                    typer.echo(f"  --part {key}: {meaning}")
         return
+
+    chosen = reproductions.reproduction(name)
+    if isinstance(chosen, reproductions.SystemInParts):
+        from pneumorph.cli.rolling import reproduce_rigid
+
+        if part is None or part not in chosen.parts:
+            raise InputError(f"--part: {part or 'missing'}, allowed for {name}: {', '.join(chosen.parts)}")
+        reproduce_rigid(
+            quick, out, resume, radius=radius, image=terrain, relief=relief, video=video, scheduler=scheduler
+        )
+        return
+    given = {"part": part, "video": video, "terrain": terrain, "relief": relief}
+    for option, value in (given | {"radius": radius, "scheduler": scheduler}).items():
+        if value is not None:
+            raise InputError(f"--{option}: {name} has no parts, so it does not take this option")
 
     from pneumorph.cli.reporting import report_reproduction
     from pneumorph.cli.solving import solve_and_report
 
-    chosen = reproductions.reproduction(name)
     study = chosen.study(quick)
     folder = out or Path("runs") / (f"{name}-quick" if quick else name)
     command = shlex.join(["pneumorph", "reproduce", name, *(["--quick"] if quick else []), "--out", str(folder)])

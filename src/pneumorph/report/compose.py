@@ -62,7 +62,7 @@ def compose(
             figure.figimage(picture, left, total[1] - top - picture.shape[0], origin="upper")
             figure.text(
                 (_GAP + number % columns * (width + _GAP)) / total[0], 1.0 - (top - 0.5 * _CAPTION) / total[1], caption,
-                fontsize=size, va="center", fontweight="bold",
+                fontsize=min(size, _fitting(caption, width + _GAP)), va="center", fontweight="bold",
             )  # fmt: skip
         if bar:
             _draw_bar(figure, bar, total, across, size)
@@ -74,6 +74,11 @@ def compose(
             )  # fmt: skip
         canvas.draw()
         return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+
+
+def _fitting(caption: str, width: int) -> float:
+    """Return the font size, points, at which a bold caption stays within some pixels."""
+    return width / (0.68 * _DPI / 72.0 * max(len(caption), 1))
 
 
 def place_panels(pictures: Sequence[Picture], columns: int | None = None) -> list[tuple[int, int]]:

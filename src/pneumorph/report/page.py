@@ -24,7 +24,7 @@ class Item:
 
 @dataclass
 class Page:
-    """What the page shows; every text is escaped. status: 'done', 'stopped' or 'running'."""
+    """What the page shows; every text is escaped. status: 'done', 'stopped' or 'running'; mesh: None without one."""
 
     title: str
     version: str
@@ -33,7 +33,7 @@ class Page:
     message: str
     tiles: list[tuple[str, str]]
     results: Table
-    mesh: Table
+    mesh: Table | None
     checks: Table
     versions: Table
     all_states: Table | None = None
@@ -50,14 +50,17 @@ class Page:
     shapes: list[Item] = field(default_factory=list)
     mesh_pictures: list[Item] = field(default_factory=list)
     check_figures: list[Item] = field(default_factory=list)
+    shapes_head: tuple[str, str] = ("Shapes and stress", "Shapes, stress and stretch")  # in the navigation, above
+    beside: str = "States, history and figures"
 
     @property
     def sections(self) -> list[tuple[str, str]]:
         """Anchors and names of the sections that there are."""
         result = [("results", "Results")]
         result += [("comparison", "Comparison")] if self.comparison else []
-        result += [("shapes", "Shapes and stress")] if self.shapes or self.stress else []
-        return [*result, ("asked", "What was asked"), ("mesh", "Mesh"), ("checks", "Checks"), ("repeat", "Repeat it")]
+        result += [("shapes", self.shapes_head[0])] if self.shapes or self.stress else []
+        result += [("asked", "What was asked"), *([("mesh", "Mesh")] if self.mesh else [])]
+        return [*result, ("checks", "Checks"), ("repeat", "Repeat it")]
 
     def html(self) -> str:
         """Return the page."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from pneumorph.errors import NameNotFoundError, unknown_name
@@ -30,7 +30,18 @@ class Reproduction:
     notes: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class SystemInParts:
+    """A published system of several models that are run one by one; parts: name -> what it is."""
+
+    name: str
+    title: str
+    source: str
+    parts: Mapping[str, str]
+
+
 _KNOWN: dict[str, Reproduction] = {}
+_IN_PARTS: dict[str, SystemInParts] = {}
 
 
 def register(item: Reproduction) -> Reproduction:
@@ -39,13 +50,21 @@ def register(item: Reproduction) -> Reproduction:
     return item
 
 
+def register_parts(item: SystemInParts) -> SystemInParts:
+    """Make a system in parts known by its name."""
+    _IN_PARTS[item.name] = item
+    return item
+
+
 def names() -> tuple[str, ...]:
-    """Return the names of all reproductions, sorted."""
-    return tuple(sorted(_KNOWN))
+    """Return the names of all reproductions, sorted, also of those in parts."""
+    return tuple(sorted({*_KNOWN, *_IN_PARTS}))
 
 
-def reproduction(name: str) -> Reproduction:
+def reproduction(name: str) -> Reproduction | SystemInParts:
     """Return a reproduction by name; raises NameNotFoundError with the nearest name."""
+    if name in _IN_PARTS:
+        return _IN_PARTS[name]
     if name not in _KNOWN:
-        raise NameNotFoundError(unknown_name("reproduction", name, _KNOWN))
+        raise NameNotFoundError(unknown_name("reproduction", name, names()))
     return _KNOWN[name]
