@@ -12,10 +12,10 @@ import pneumorph
 
 SOURCE = Path(pneumorph.__file__).parent
 PIPELINE = [
-    "errors", "units", "threads", "materials", "geometry", "mesh", "mechanics", "solution", "measures", "closed_form",
-    "gaits", "terrain", "studies", "report", "cli",
+    "errors", "units", "threads", "materials", "geometry", "mesh", "mechanics", "solution", "measures", "exchange",
+    "closed_form", "gaits", "terrain", "studies", "report", "cli",
 ]  # fmt: skip
-ENGINES = ("netgen", "basix", "pypardiso", "pyvista")
+ENGINES = ("netgen", "basix", "ipctk", "pypardiso", "pyvista", "mujoco")
 MODULES = sorted(path for path in SOURCE.rglob("*.py") if path.parent != SOURCE or path.stem != "__init__")
 
 

@@ -26,11 +26,14 @@ _PUBLIC = {
     "errors": ("InputError", "NotConvergedError", "PneumorphError", "StorageError"),
     "units": ("parse", "show"),
     "materials": ("Material", "NeoHookean", "Yeoh", "library"),
-    "geometry": ("Actuator", "Finger", "HexagonalPrism", "PneuNet", "ThickSphere", "ThickTube", "export"),
-    "mesh": ("Mesh", "generate", "inspect"),
+    "geometry": (
+        "Actuator", "BendingSkin", "Finger", "HexagonalPrism", "PneuNet", "ThickSphere", "ThickTube", "export",
+    ),
+    "mesh": ("Imported", "Mesh", "MeshSize", "Selector", "generate", "inspect"),
     "mechanics": (
-        "Cavity", "Clamp", "Force", "Gravity", "Model", "Phase", "Prescribed", "PressureSupply", "Programme", "Roller",
-        "Settings", "State", "Symmetry", "Traction", "VolumeSupply",
+        "Atmosphere", "Cavity", "Clamp", "FlowSupply", "Force", "GasSupply", "Gravity", "Model", "Phase", "Prescribed",
+        "PressureSupply", "Programme", "Roller", "SealedSupply", "Settings", "State", "Symmetry", "Traction", "Tube",
+        "VolumeSupply",
     ),
     "solution": ("Solution", "Status", "solve"),
     "measures": ("ChordAngle", "TipRotation"),
@@ -62,6 +65,7 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from pneumorph.errors import PneumorphError as PneumorphError
     from pneumorph.errors import StorageError as StorageError
     from pneumorph.geometry import Actuator as Actuator
+    from pneumorph.geometry import BendingSkin as BendingSkin
     from pneumorph.geometry import Finger as Finger
     from pneumorph.geometry import HexagonalPrism as HexagonalPrism
     from pneumorph.geometry import PneuNet as PneuNet
@@ -74,9 +78,12 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from pneumorph.materials import library as library
     from pneumorph.measures import ChordAngle as ChordAngle
     from pneumorph.measures import TipRotation as TipRotation
+    from pneumorph.mechanics import Atmosphere as Atmosphere
     from pneumorph.mechanics import Cavity as Cavity
     from pneumorph.mechanics import Clamp as Clamp
+    from pneumorph.mechanics import FlowSupply as FlowSupply
     from pneumorph.mechanics import Force as Force
+    from pneumorph.mechanics import GasSupply as GasSupply
     from pneumorph.mechanics import Gravity as Gravity
     from pneumorph.mechanics import Model as Model
     from pneumorph.mechanics import Phase as Phase
@@ -84,12 +91,17 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from pneumorph.mechanics import PressureSupply as PressureSupply
     from pneumorph.mechanics import Programme as Programme
     from pneumorph.mechanics import Roller as Roller
+    from pneumorph.mechanics import SealedSupply as SealedSupply
     from pneumorph.mechanics import Settings as Settings
     from pneumorph.mechanics import State as State
     from pneumorph.mechanics import Symmetry as Symmetry
     from pneumorph.mechanics import Traction as Traction
+    from pneumorph.mechanics import Tube as Tube
     from pneumorph.mechanics import VolumeSupply as VolumeSupply
+    from pneumorph.mesh import Imported as Imported
     from pneumorph.mesh import Mesh as Mesh
+    from pneumorph.mesh import MeshSize as MeshSize
+    from pneumorph.mesh import Selector as Selector
     from pneumorph.mesh import generate as generate
     from pneumorph.mesh import inspect as inspect
     from pneumorph.solution import Solution as Solution

@@ -1,5 +1,7 @@
 """Every refusal of the solver, with the message that names what is wrong."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -105,7 +107,7 @@ def test_a_domain_without_material_is_refused():
 
 
 def test_a_name_given_twice_is_refused():
-    with pytest.raises(InputError, match="the name 'pull' is given to 2 loads, cavities or displacements"):
+    with pytest.raises(InputError, match="the name 'pull' is given to 2 loads, cavities, displacements or contacts"):
         plane(loads=(Force("top", (0, 1), "pull"),), supports=(*HELD, Prescribed("right", "x", "pull")))
 
 
@@ -267,3 +269,17 @@ def test_the_number_of_threads_comes_from_the_environment(monkeypatch):
     assert thread_count.__wrapped__() == 3
     monkeypatch.delenv("PNEUMORPH_THREADS")
     assert thread_count.__wrapped__() >= 1
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"tolerance": float("nan")}, "tolerance = nan, allowed: more than 0, less than 0.01"),
+        ({"iterations": 0}, "iterations = 0, allowed: 1 or more"),
+        ({"growth": -1.0}, "growth = -1.0, allowed: 1 or more"),
+        ({"cut": 1.0}, "cut = 1.0, allowed: more than 0, less than 1"),
+    ],
+)
+def test_settings_that_make_no_sense_are_refused(given, message):
+    with pytest.raises(InputError, match=re.escape(f"solver: {message}")):
+        Settings(**given)

@@ -1,6 +1,7 @@
 """Actuator templates: frozen, checked dimensions that make a solid with named faces and cavities."""
 
 from pneumorph.geometry.actuator import Actuator, Dimension
+from pneumorph.geometry.bending_skin import BendingSkin
 from pneumorph.geometry.cad import export
 from pneumorph.geometry.finger import Finger
 from pneumorph.geometry.hexagonal_prism import HexagonalPrism
@@ -10,6 +11,7 @@ from pneumorph.geometry.thick_tube import ThickTube
 
 __all__ = [
     "Actuator",
+    "BendingSkin",
     "Dimension",
     "Finger",
     "HexagonalPrism",

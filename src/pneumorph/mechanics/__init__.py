@@ -1,6 +1,7 @@
 """The solver: models, programmes and the load stepping that yields converged states."""
 
 from pneumorph.mechanics.cavity import Cavity
+from pneumorph.mechanics.contact import Block, Contact, Cylinder, HalfSpace, Motion, Pipe, SurfaceFile, Touch
 from pneumorph.mechanics.continuation import march
 from pneumorph.mechanics.loads import Force, Gravity, Traction
 from pneumorph.mechanics.model import Model
@@ -21,7 +22,8 @@ from pneumorph.mechanics.supplies import (
 from pneumorph.mechanics.supports import Clamp, Prescribed, Roller, Symmetry
 
 __all__ = [
-    "Atmosphere", "Cavity", "Clamp", "Energies", "FlowSupply", "Force", "Gas", "GasSupply", "Gravity", "Model", "Phase",
-    "Prescribed", "PressureSupply", "Programme", "Roller", "SealedSupply", "Settings", "State", "Supply", "Symmetry",
+    "Atmosphere", "Block", "Cavity", "Clamp", "Contact", "Cylinder", "Energies", "FlowSupply", "Force", "Gas",
+    "GasSupply", "Gravity", "HalfSpace", "Model", "Motion", "Phase", "Pipe", "Prescribed", "PressureSupply",
+    "Programme", "Roller", "SealedSupply", "Settings", "State", "Supply", "SurfaceFile", "Symmetry", "Touch",
     "Traction", "Tube", "VolumeSupply", "march",
 ]  # fmt: skip

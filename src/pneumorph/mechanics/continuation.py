@@ -41,6 +41,7 @@ def march(
     """
     programme.check(model)
     settings = settings or Settings()
+    few = 3 * settings.few if model.contacts else settings.few  # contact is sought step by step
     newton = Newton(model, settings)
     mass = Mass(model) if any(phase.inertia for phase in programme.phases) else None
     past = list(start[-3:])
@@ -63,10 +64,10 @@ def march(
             values, lost, growth = programme.values(time), 0.0, settings.growth
             seconds = programme.clock(time) - last.clock
             inertia = Inertia(mass, SCHEMES[phase.inertia], last, seconds) if mass and phase.inertia else None
-            step = Increment(last, seconds, inertia)
+            step = Increment(last, seconds, inertia, time - last.time)
             try:
                 try:
-                    found = newton.solve(_predict(past, time), values, step)
+                    found = newton.solve(newton.reachable(_predict(past, time), last, values), values, step)
                 except IncrementFailedError as failure:
                     if not settings.viscosity or increment > phase.first or inertia:
                         raise
@@ -84,7 +85,7 @@ def march(
                     f"stopped in phase '{phase.name}' at {done:.4f} of it, state {last.index}: {reason} "
                     f"with the smallest increment {phase.smallest:g}"
                 )
-        if growth < 1.0 or (found.iterations <= settings.few and increment >= 0.999 * planned):
+        if growth < 1.0 or (found.iterations <= few and increment >= 0.999 * planned):
             planned = min(growth * increment, phase.largest)
         state = _state(step, phase.name, time, found, values, lost, planned)
         past = [*past[-2:], state]
@@ -122,7 +123,8 @@ class _Viscosity:
 def _slide(newton: Newton, step: Increment, values: dict[str, float]) -> tuple[Converged, float]:
     """Return the equilibrium that viscous sliding from the last state leads to, and the energy lost on the way, mJ."""
     last, model = step.start, newton.model
-    trial = Trial(last.displacement, last.pressure_modes, np.array([last.pressure[n] for n in last.pressure]))
+    pressure = np.array([last.pressure[n] for n in last.pressure])
+    trial = Trial(last.displacement, last.pressure_modes, pressure, model.contact.ways(last.values))
     scale = max(m.shear_modulus for m in model.materials.values()) / model.mesh.size**2
     coefficient, lost, count = newton.settings.viscosity * scale, 0.0, 0
     for _ in range(newton.settings.relaxations):
@@ -165,7 +167,7 @@ def _predict(past: Sequence[State], time: float) -> Trial:
     pressure = np.array([sum(w * s.pressure[n] for w, s in zip(weights, same, strict=True)) for n in last.pressure])
     if len(same) > 1 and last.model.body.smallest_volume_ratio(last.model.mesh.points + displacement, False) <= 0.2:
         return _predict([last], time)
-    return Trial(displacement, modes, pressure)
+    return Trial(displacement, modes, pressure, last.model.contact.ways(last.values))
 
 
 def _lagrange(times: Sequence[float], time: float) -> list[float]:
@@ -208,14 +210,20 @@ def _state(
         damped = step.drag.lost(trial.displacement, found.imbalance)
     load += 0.5 * float((reactions + last.reactions)[held] @ moved[held])
     position = model.mesh.points + trial.displacement
+    contact, ways = model.contact, trial.ways
+    touches = contact.touches(position, ways, found.rubbing)
+    rubbed = contact.slipped(position, ways, found.rubbing) if found.rubbing else 0.0
+    way = ways - contact.ways(last.values)
+    load += 0.5 * float((contact.drives(touches) + contact.drives(last.touches)) @ way)
     memory = model.body.remember(position, last.memory, step.seconds)
     lost += model.body.overstress_work((last.positions, position), (last.memory, memory))
     _, strain = model.body.energies(position, trial.modes)
     energies = Energies(
-        strain, old.supply + supply, old.load + load, old.viscous + lost, motion, old.numerical + damped
-    )
+        strain, old.supply + supply, old.load + load, old.viscous + lost, motion, old.numerical + damped,
+        contact.energy(position, ways), old.friction + rubbed,
+    )  # fmt: skip
     return State(
         model, last.index + 1, phase, time, trial.displacement, trial.modes, pressure, volume, values, reactions,
         energies, found.iterations, None if moving else found.unstable_modes, found.smallest_volume_ratio, planned,
-        last.clock + step.seconds, memory=memory, gas=found.gas, **moving,
+        last.clock + step.seconds, memory=memory, gas=found.gas, touches=touches, **moving,
     )  # fmt: skip

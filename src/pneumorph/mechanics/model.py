@@ -13,6 +13,7 @@ from pneumorph.errors import InputError, MeshError, NameNotFoundError, unknown_n
 from pneumorph.materials import Material
 from pneumorph.mechanics.body import Body, cell_volumes
 from pneumorph.mechanics.cavity import Cavity, CavitySurface
+from pneumorph.mechanics.contact import Contact, Contacts, Motion
 from pneumorph.mechanics.loads import Load, lumped_mass
 from pneumorph.mechanics.supplies import Atmosphere, Supply, Tube
 from pneumorph.mechanics.supplies.checks import check_tubes
@@ -33,9 +34,11 @@ class Model:
     cavities:  the spaces that are inflated.
     tubes:     tubes between cavities filled with gas.
     atmosphere: pressure and temperature outside, and the gas.
+    contacts:  what may touch what; with any, supports need not hold the body.
     pressure:  'constant' or 'linear' pressure modes in each cell (see `mechanics.volumetric`).
 
-    Raises InputError for a domain without material or unknown, names given twice, a body that is free to move;
+    Raises InputError for a domain without material or unknown, names given twice, a body that is free to move,
+    surfaces in contact that intersect;
     MeshError for cells turned inside out or nodes without a cell; LeakingCavityError for an open cavity.
     """
 
@@ -47,6 +50,7 @@ class Model:
     pressure: str = field(default="constant", kw_only=True)
     tubes: tuple[Tube, ...] = field(default=(), kw_only=True)
     atmosphere: Atmosphere = field(default=Atmosphere(), kw_only=True)
+    contacts: tuple[Contact, ...] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
         if self.pressure not in ("linear", "constant"):
@@ -58,14 +62,19 @@ class Model:
             if domain not in self.materials:
                 raise InputError(f"no material for the domain '{domain}' of the mesh")
         names = [item.name for item in (*self.loads, *self.cavities, *self._moved)]
+        names += [*self.obstacles, *(contact.name for contact in self.contacts)]
         for name in names:
             if names.count(name) > 1:
-                raise InputError(f"the name '{name}' is given to {names.count(name)} loads, cavities or displacements")
+                raise InputError(
+                    f"the name '{name}' is given to {names.count(name)} loads, cavities, displacements or contacts"
+                )
         self._check_mesh()
-        self._check_held()
+        if not self.contacts:  # friction and walls hold, too, but only once there is contact
+            self._check_held()
         for load in self.loads:
             load.pattern(self.mesh, self.materials)
         _ = self.surfaces
+        _ = self.contact
         check_tubes(self.tubes, self.supplies)
 
     @property
@@ -76,7 +85,18 @@ class Model:
     def kinds(self) -> dict[str, str]:
         """Name -> unit kind of everything that a programme can drive."""
         kinds = {name: supply.kind for name, supply in self.supplies.items() if supply.kind is not None}
-        return kinds | {item.name: item.kind for item in (*self.loads, *self._moved)}
+        kinds |= {item.name: item.kind for item in (*self.loads, *self._moved)}
+        return kinds | {name: motion.kind for name, motion in self.obstacles.items()}
+
+    @property
+    def obstacles(self) -> dict[str, Motion]:
+        """Name -> motion of the obstacles that a programme moves; one motion may move several."""
+        return {contact.motion.name: contact.motion for contact in self.contacts if contact.motion}
+
+    @cached_property
+    def contact(self) -> Contacts:
+        """The contacts at work."""
+        return Contacts(self.mesh, self.contacts, min(item.shear_modulus for item in self.materials.values()))
 
     @cached_property
     def supplies(self) -> dict[str, Supply]:

@@ -1,30 +1,54 @@
 """Newton's method for one increment: displacement, pressure modes and cavity pressures together.
 
-Full steps, limited by a cap on the displacement and by det F > 0, are all that guards it: an energy line search is
-worse than cutting the increment, because the large bulk modulus makes the energy rise along good steps. Where no cut
-helps, `continuation` adds a viscous term; `dynamics` adds inertia. Both come here as the `Drag` of an `Increment`.
+Full steps, limited by a cap on the displacement, by det F > 0 and by contact, are all that guards it: an energy line
+search is worse than cutting the increment, because the large bulk modulus makes the energy rise along good steps. Where
+no cut helps, `continuation` adds a viscous term; `dynamics` adds inertia. Both come here as the `Drag` of an
+`Increment`.
 """
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
 
+from pneumorph.errors import InputError
 from pneumorph.mechanics.body import Assembly
+from pneumorph.mechanics.contact.contacts import Rubbing
 from pneumorph.mechanics.linear import LinearSolver, linear_solver
 from pneumorph.mechanics.model import Model
+from pneumorph.mechanics.pattern import Pattern
 from pneumorph.mechanics.state import State
 from pneumorph.mechanics.supplies import Gas
 from pneumorph.mechanics.supplies.network import Equations, Network, NetworkIncrement
+from pneumorph.mechanics.touching import Forces, Tangent, Touching
 
 Array = NDArray[np.float64]
+_SETTLED = 1e-4  # error at which friction takes up the present normal forces
+_RENEWED = 5e-3  # error that these may make
+_NEAR = 1e-2  # error below which the exact Hessian of the barrier leads on
 _log = logging.getLogger(__name__)
+
+
+# setting -> lowest value, highest, whether the lowest is allowed
+_ALLOWED = {
+    "tolerance": (0.0, 1e-2, False),
+    "iterations": (1, np.inf, True),
+    "contact_iterations": (1, np.inf, True),
+    "rounds": (0, np.inf, True),
+    "largest_step": (0.0, np.inf, False),
+    "growth": (1.0, np.inf, True),
+    "few": (0, np.inf, True),
+    "cut": (0.0, 1.0, False),
+    "viscosity": (0.0, np.inf, True),
+    "relaxations": (1, np.inf, True),
+    "flow_accuracy": (0.0, np.inf, False),
+}
 
 
 @dataclass(frozen=True)
@@ -36,6 +60,8 @@ class Settings:
     largest_step:  cap on a nodal displacement in one iteration, as a fraction of the body's size.
     growth, few:   an increment that took at most `few` iterations is followed by one `growth` times larger.
     cut:           factor on an increment that failed.
+    contact_iterations: iterations where there is contact.
+    rounds:        how often friction takes up the normal forces of the present place before those of the last stay.
     viscosity:     first coefficient of the viscous regularisation that is tried where increments fail, in units of
                    mu / size2 (see `continuation`); 0 switches it off for good.
     relaxations:   viscous steps before an increment is given up.
@@ -45,6 +71,8 @@ class Settings:
 
     tolerance: float = 1e-8
     iterations: int = 12
+    contact_iterations: int = 60
+    rounds: int = 3
     largest_step: float = 0.05
     growth: float = 1.5
     few: int = 7
@@ -53,19 +81,31 @@ class Settings:
     relaxations: int = 60
     flow_accuracy: float = 1e-4
 
+    def __post_init__(self) -> None:
+        for name, (least, most, included) in _ALLOWED.items():
+            value = getattr(self, name)
+            if not (least < value < most or (included and value == least)):  # nan is in no range
+                limits = f"{least:g} or more" if included else f"more than {least:g}"
+                limits += f", less than {most:g}" if most < np.inf else ""
+                raise InputError(f"solver: {name} = {value!r}, allowed: {limits}")
+
 
 @dataclass(eq=False)
 class Trial:
-    """The unknowns of an increment: displacement (nodes, d), pressure modes, cavity pressures (cavities,)."""
+    """The unknowns of an increment: displacement (nodes, d), pressure modes, cavity pressures (cavities,).
+
+    ways (contacts,): how far obstacles have moved, mm; they wait where nothing gives way.
+    """
 
     displacement: Array
     modes: list[Array]
     pressure: Array
+    ways: Array = field(default_factory=lambda: np.zeros(0))
 
-    def stepped(self, factor: float, du: Array, dq: list[Array], dp: Array) -> Trial:
+    def stepped(self, factor: float, du: Array, dq: list[Array], dp: Array, dw: Array) -> Trial:
         """Return the trial after a part of a step."""
         modes = [q + factor * d for q, d in zip(self.modes, dq, strict=True)]
-        return Trial(self.displacement + factor * du, modes, self.pressure + factor * dp)
+        return Trial(self.displacement + factor * du, modes, self.pressure + factor * dp, self.ways + factor * dw)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +114,7 @@ class Converged:
 
     imbalance (unknowns,): internal minus applied forces, N, without those of a drag.
     gas: in the cavities; flow_error: of the integration of its flow, over what the settings allow.
+    rubbing: the friction that it is in equilibrium with.
     """
 
     trial: Trial
@@ -84,6 +125,7 @@ class Converged:
     smallest_volume_ratio: float
     gas: Gas
     flow_error: float
+    rubbing: Rubbing | None
 
 
 class IncrementFailedError(Exception):
@@ -104,12 +146,13 @@ class Drag(Protocol):
 class Increment:
     """What an increment starts from, how long it takes and what it meets.
 
-    start: the state before; seconds: time that passes, 0 where the phase has no duration.
+    start: the state before; seconds: time that passes, 0 where the phase has no duration; share: of the phase.
     """
 
     start: State
     seconds: float = 0.0
     drag: Drag | None = None
+    share: float = 1.0
 
 
 class Newton:
@@ -120,10 +163,10 @@ class Newton:
         self.settings = settings
         self.linear: LinearSolver = linear_solver()
         body = model.body
-        self._indices = body.pattern.indices
-        self._indptr = body.pattern.indptr.astype(np.int32)
         self._held = model.held
-        self._struck = body.pattern.touching(self._held)
+        self._contact = model.contact
+        self._touching = Touching(model)
+        self._pattern: Pattern | None = None
         self._free = np.ones(body.unknowns, dtype=bool)
         self._free[self._held] = False
         self._surfaces = list(model.surfaces.values())
@@ -139,10 +182,15 @@ class Newton:
         """
         settings = self.settings
         tolerance = 1e-3 if loose else settings.tolerance
-        iterations = settings.iterations // 2 if loose else settings.iterations
+        most = settings.contact_iterations if self._contact else settings.iterations
+        iterations = most // 2 if loose else most
         load = self._load(values)
         supplies = self._network.increment(increment.start, increment.seconds, values)
         given = self.model.prescribed(values)[self._held]
+        passed = increment.seconds or increment.share
+        goal, rounds = self._contact.ways(values), 0
+        rubbing = self._touching.rubbing(increment.start, passed)
+        self._touching.make_room(increment.start)
         unstable: int | None = 0
         first = best = before = np.inf
         settled, factor = False, 1.0
@@ -157,37 +205,60 @@ class Newton:
             imbalance = assembly.force - applied
             residual = imbalance if increment.drag is None else imbalance + increment.drag.force(trial.displacement)
             equations = supplies.equations(trial.pressure, volumes)
-            move = given - trial.displacement.ravel()[self._held]
-            error = self._error(residual, applied, equations, move)
+            move, dw = given - trial.displacement.ravel()[self._held], goal - trial.ways
+            if self._contact:
+                bare = residual
+                pushed = self._contact.evaluate(position, trial.ways, rubbing, hessian=False).gradient
+                imbalance, residual = imbalance + pushed, bare + pushed
+                error = self._error(residual, applied, equations, move, pushed, dw)
+                if rubbing is not None and error <= _SETTLED and rounds < settings.rounds:
+                    newer = self._touching.rubbing(increment.start, passed, (position, trial.ways))
+                    again = self._contact.evaluate(position, trial.ways, newer, hessian=False).gradient
+                    renewed = self._error(bare + again, applied, equations, move, again, dw)
+                    rounds = rounds + 1 if renewed > _RENEWED else settings.rounds
+                    if rounds == settings.rounds and renewed > _RENEWED:
+                        _log.warning("friction keeps normal forces that are off by %.2g of all forces", renewed)
+                    if rounds < settings.rounds:
+                        imbalance, residual = imbalance - pushed + again, bare + again
+                        error, rubbing, factors = renewed, newer, None
+            else:
+                error = self._error(residual, applied, equations, move)
             if not np.isfinite(error):
                 raise IncrementFailedError("the residual is not finite")
             if (error <= tolerance or (settled and error <= 1e-3)) and iteration > 0:
                 ratio = self.model.body.smallest_volume_ratio(position, fine=True)
                 gas = supplies.gas(trial.pressure, volumes)
                 flow_error = supplies.error(trial.pressure, volumes) / settings.flow_accuracy
-                return Converged(trial, volumes, imbalance, iteration, unstable, ratio, gas, flow_error)
+                return Converged(trial, volumes, imbalance, iteration, unstable, ratio, gas, flow_error, rubbing)
             _log.debug("iteration %d: error %.3g, unstable modes %s", iteration, error, unstable)
             # the last factors go on serving while they converge fast: a factorisation costs ten substitutions
             if unstable or factor < 1.0 or error > min(1e-2, gain * before):
                 factors = None
             first = error if iteration == 0 else first
-            if iteration >= 5 and error > first:  # a good increment has passed its worst by then
+            if iteration >= 5 and error > first and not self._contact:  # a good increment has passed its worst by then
                 raise IncrementFailedError(f"the residual is still larger than at first after {iteration} iterations")
             best, before = min(best, error), error
-            if error > 1e6 * max(best, settings.tolerance):
+            if error > 1e6 * max(best, settings.tolerance) and not self._contact:
                 raise IncrementFailedError(f"the residual grew to {error:.2g} of the applied forces")
             if factors is None:
                 tangent = self._tangent(assembly, position, trial.pressure, increment.drag)
-                factors, gain = self._factorise(tangent, gradients, equations.softness, move), 1e-2
+                tangent, touch = self._touching.tangent(tangent, position, trial.ways, rubbing, error < _NEAR)
+                factors, gain = self._factorise(tangent, gradients, equations.softness, move, touch), 1e-2
                 unstable = factors.unstable_modes
             else:
                 gain = 1e-1
-            du, dp = self._step(factors, residual, gradients, (supplies, equations, trial.pressure), move)
+            pulled = residual + factors.touching.coupling @ dw
+            du, dp = self._step(factors, pulled, gradients, (supplies, equations, trial.pressure), move)
             dq = self.model.body.pressure_step(assembly.gains, du)
             largest = float(np.abs(du).max())
             factor = min(1.0, settings.largest_step * self.model.mesh.size / max(largest, 1e-300))
             factor = self._keep_orientation(position, du, factor)
-            trial = trial.stepped(factor, du, dq, dp)
+            if self._contact:
+                factor *= self._free_way(position, trial.ways, factor * du, factor * dw)
+                forces = Forces(residual, pushed, rubbing)
+                place = position, trial.ways
+                factor = self._touching.softened(place, (du, dw), forces, factors.touching, factor)
+            trial = trial.stepped(factor, du, dq, dp, dw)
             # under a very small load the residual stays at the rounding of the bulk term: then the step tells
             settled = (
                 factor == 1.0
@@ -195,6 +266,36 @@ class Newton:
                 and float(np.abs(dp).max(initial=0.0)) <= 1e-10 * self._shear
             )
         raise IncrementFailedError(f"no convergence in {iterations} iterations")
+
+    def _adopt(self) -> None:
+        """Use the present pattern; where it is a new one, the linear solver analyses again."""
+        pattern = self._touching.wide.pattern
+        if pattern is not self._pattern:
+            self._pattern, self._indices = pattern, pattern.indices
+            self._indptr = pattern.indptr.astype(np.int32)
+            self._struck = pattern.touching(self._held)
+
+    def _free_way(self, position: Array, ways: Array, du: Array, dw: Array) -> float:
+        """Return the share of a step on which nothing collides; raises IncrementFailedError where nothing moves."""
+        share = self._contact.limit((position, ways), (position + du, ways + dw))
+        if share < 1e-6:
+            names = self._contact.blocking((position, ways), (position + du, ways + dw))
+            raise IncrementFailedError(f"surfaces in contact let nothing move: {', '.join(names)}")
+        return share
+
+    def reachable(self, trial: Trial, last: State, values: Mapping[str, float]) -> Trial:
+        """Return the part of the way from the last state to a prediction on which nothing collides."""
+        if not self._contact:
+            return trial
+        ways = self._contact.ways(last.values)
+        du, dw = trial.displacement - last.displacement, self._contact.ways(values) - ways
+        share = self._contact.limit((last.positions, ways), (last.positions + du, ways + dw))
+        if share == 1.0:
+            return Trial(trial.displacement, trial.modes, trial.pressure, ways + dw)
+        modes = [old + share * (new - old) for old, new in zip(last.pressure_modes, trial.modes, strict=True)]
+        before = np.array([last.pressure[name] for name in last.pressure])
+        pressure = before + share * (trial.pressure - before)
+        return Trial(last.displacement + share * du, modes, pressure, ways + share * dw)
 
     def _assemble(self, trial: Trial, increment: Increment) -> Assembly:
         position = self.model.mesh.points + trial.displacement
@@ -206,14 +307,22 @@ class Newton:
             total += values.get(name, 0.0) * pattern
         return total
 
-    def _error(self, residual: Array, applied: Array, equations: Equations, move: Array) -> float:
+    def _error(
+        self, residual: Array, applied: Array, equations: Equations, move: Array, pushed: Array | None = None,
+        dw: Array | None = None,
+    ) -> float:  # fmt: skip
         """Return the largest of the relative errors in force, supplies and given displacements."""
         size = np.linalg.norm
         least = 1e-6 * self._shear * self.model.mesh.size**2  # on a way back to zero no force is left to compare with
         scale = max(float(size(applied[self._free])), float(size(residual[self._held])), least)
+        if pushed is not None:
+            scale = max(scale, float(size(pushed[self._free])))
         force = float(size(residual[self._free]) / scale)
         supplies = np.abs(equations.value) / equations.scale
-        return max(force, supplies.max(initial=0.0), np.abs(move).max(initial=0.0) / self.model.mesh.size)
+        missed = np.abs(move).max(initial=0.0)
+        if dw is not None:
+            missed = max(missed, np.abs(dw).max(initial=0.0))
+        return max(force, supplies.max(initial=0.0), missed / self.model.mesh.size)
 
     def _tangent(self, assembly: Assembly, position: Array, pressure: Array, drag: Drag | None) -> Array:
         """Return the values of the tangent at fixed cavity pressures, before supports are applied."""
@@ -224,9 +333,12 @@ class Newton:
             drag.add_tangent(values)
         return values
 
-    def _factorise(self, values: Array, gradients: list[Array], softness: Array, move: Array) -> _Factors:
+    def _factorise(
+        self, values: Array, gradients: list[Array], softness: Array, move: Array, touching: Tangent
+    ) -> _Factors:
         """Factor the tangent with its supports, and solve for the cavities' unit pressures; overwrites `values`."""
-        diagonal = self.model.body.pattern.diagonal
+        self._adopt()
+        diagonal = self._touching.wide.pattern.diagonal
         moved = np.zeros(self.model.body.unknowns)
         moved[self._held] = move
         pulled = _multiply(self._matrix(values), moved) if np.any(move) else moved
@@ -236,7 +348,7 @@ class Newton:
         self.linear.factorise(self._matrix(values))
         slopes = self._slopes(gradients)
         response = self.linear.solve(slopes.T) if len(slopes) else slopes.T
-        return _Factors(pulled, response, self._unstable(slopes @ response, softness))
+        return _Factors(pulled, response, self._unstable(slopes @ response, softness), touching)
 
     def _step(
         self, factors: _Factors, residual: Array, gradients: list[Array],
@@ -301,6 +413,7 @@ class _Factors:
     pulled: Array
     response: Array
     unstable_modes: int | None
+    touching: Tangent
 
 
 def _multiply(upper: sparse.csr_matrix, vector: Array) -> Array:

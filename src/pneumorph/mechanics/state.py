@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumorph.mechanics.contact import Touch
 from pneumorph.mechanics.model import Model
 from pneumorph.mechanics.supplies import Gas
 from pneumorph.mechanics.supplies.network import gas_at_rest
@@ -21,8 +22,10 @@ class Energies:
 
     strain: stored elastically; supply: work of the cavities' fluids; load: work of loads and moved supports;
     viscous: work of the overstresses of viscous materials (lost, or held until they relax), and lost in regularisation;
-    kinetic: of motion; numerical: lost in the damping of the time integration.
-    strain + kinetic + viscous + numerical = supply + load, but for the integration over finite increments.
+    kinetic: of motion; numerical: lost in the damping of the time integration;
+    contact: stored in barriers; friction: lost in it.
+    strain + kinetic + contact + viscous + numerical + friction = supply + load, but for the integration over finite
+    increments.
     """
 
     strain: float = 0.0
@@ -31,16 +34,22 @@ class Energies:
     viscous: float = 0.0
     kinetic: float = 0.0
     numerical: float = 0.0
+    contact: float = 0.0
+    friction: float = 0.0
 
     @property
     def difference(self) -> float:
         """Work that was not found as energy or loss, mJ."""
-        return self.supply + self.load - (self.strain + self.kinetic + self.viscous + self.numerical)
+        return (
+            self.supply
+            + self.load
+            - (self.strain + self.kinetic + self.contact + self.viscous + self.numerical + self.friction)
+        )
 
     @property
     def relative_error(self) -> float:
         """Difference over the largest term; 0 at rest."""
-        largest = max(abs(self.strain), abs(self.supply), abs(self.load), abs(self.kinetic))
+        largest = max(abs(self.strain), abs(self.supply), abs(self.load), abs(self.kinetic), abs(self.friction))
         return self.difference / largest if largest else 0.0
 
 
@@ -61,6 +70,7 @@ class State:
     memory: for each block of cells, (terms + 1, cells, q, 6), MPa: elastic stress and overstresses of its Prony series
     (terms 0 and an empty array where its material has none).
     gas: in the cavities that hold gas.
+    touches: contact -> forces, area and smallest distance; none at rest before the first increment.
     """
 
     model: Model
@@ -84,6 +94,7 @@ class State:
     imbalance: Array | None = None
     memory: list[Array] = field(default_factory=list)
     gas: Gas = field(default_factory=Gas)
+    touches: Mapping[str, Touch] = field(default_factory=dict)
 
     @property
     def positions(self) -> Array:

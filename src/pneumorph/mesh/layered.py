@@ -18,6 +18,10 @@ Array = NDArray[np.float64]
 # of a wedge between the planes k, k + 1, k + 2 of nodes: (plane, node of the flat triangle6) in VTK's order
 _WEDGE = [(0, 0), (0, 1), (0, 2), (2, 0), (2, 1), (2, 2), (0, 3), (0, 4), (0, 5), (2, 3), (2, 4), (2, 5)]
 _WEDGE += [(1, 0), (1, 1), (1, 2), (1, 3), (1, 4), (1, 5)]
+# of a hexahedron: (plane, node of the flat quad9); corners, mids below, above and between, centres of faces, centre
+_HEXAHEDRON = [(plane, node) for plane in (0, 2) for node in range(4)]
+_HEXAHEDRON += [(plane, node) for plane in (0, 2) for node in range(4, 8)] + [(1, node) for node in range(4)]
+_HEXAHEDRON += [(1, 7), (1, 5), (1, 4), (1, 6), (0, 8), (2, 8), (1, 8)]
 # of the quadrilateral above a line3 (ends 0 and 1, middle 2), outward if the flat mesh lies on the left of the line
 _QUAD = [(0, 0), (0, 1), (2, 1), (2, 0), (0, 2), (1, 1), (2, 2), (1, 0), (1, 2)]
 
@@ -81,6 +85,15 @@ def rolled(radius: float) -> Callable[[Array], Array]:
         return np.column_stack([distance * np.sin(angle), points[:, 1], distance * np.cos(angle)])
 
     return mapping
+
+
+def lifted(kind: str, flat: NDArray[np.int64], plane: int, count: int) -> NDArray[np.int64]:
+    """Return the nodes of one layer of cells on flat cells: wedge18 on triangle6, hexahedron27 on quad9.
+
+    flat: nodes (k, 6) or (k, 9), anticlockwise. plane: of nodes, below the layer; it ends two planes higher.
+    count: nodes in a plane; node i of plane p has the number p * count + i.
+    """
+    return _lift(flat, {"triangle6": _WEDGE, "quad9": _HEXAHEDRON}[kind], plane, count)
 
 
 def _heights(layers: Sequence[tuple[float, str]]) -> Array:

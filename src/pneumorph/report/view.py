@@ -76,9 +76,9 @@ def face_on(states: Sequence[State]) -> View:
     along = long_axis(mesh)
     across = max((_sideways(state, along) for state in states), key=lambda motion: float(np.linalg.norm(motion)))
     if np.linalg.norm(across) < 0.01 * mesh.size:
-        extents = np.ptp(mesh.points, axis=0)
-        across = np.eye(3)[int(np.argsort(-extents, kind="stable")[1])]
-        across = across - along * (along @ across)
+        beside = np.eye(3) - np.outer(along, along)  # rows: the axes without their part along the body
+        extents = np.ptp(mesh.points, axis=0) * np.linalg.norm(beside, axis=1)
+        across = beside[int(np.argmax(extents))]
     direction = _snapped(np.cross(along, across))
     # z stands upright unless it points at the camera; of the two sides, the one from which x or y runs to the right
     up = np.array([0.0, 0.0, 1.0]) if abs(direction[2]) < 0.9 else np.array([0.0, 1.0, 0.0])

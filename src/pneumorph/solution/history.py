@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from pneumorph.errors import InputError, NameNotFoundError, StorageError, unknown_name
 from pneumorph.mechanics import FlowSupply, Model, Programme, State
+from pneumorph.mechanics.contact.part import NO_TOUCH
 from pneumorph.mechanics.supplies import GasFilled
+from pneumorph.mechanics.supports import AXES
 from pneumorph.solution.files import write_atomically
 from pneumorph.units import printed_unit, to_printed
 
@@ -81,7 +83,7 @@ class History:
     @property
     def kept_energy(self) -> NDArray[np.float64]:
         """What the works of the run were turned into (rows,), mJ: stored, of motion, and lost."""
-        kinds = ("strain_energy", "viscous_loss", "kinetic_energy", "numerical_loss")
+        kinds = ("strain_energy", "contact_energy", "viscous_loss", "friction_loss", "kinetic_energy", "numerical_loss")
         total: NDArray[np.float64] = np.sum([self.values(key) for key in kinds if key in self.keys], axis=0)
         return total
 
@@ -150,6 +152,16 @@ def columns(model: Model, programme: Programme, measures: Sequence[Measure]) -> 
         if isinstance(model.supplies[cavity], FlowSupply):
             result.append(Column(f"source:{cavity}", f"gauge pressure of the source of {cavity}", "pressure"))
     result += [Column(f"value:{n}", n, kind) for n, kind in model.kinds.items() if n not in model.surfaces]
+    for name in (contact.name for contact in model.contacts):
+        forces = [
+            Column(f"contact_force_{a}:{name}", f"force {a} on {name}", "force") for a in AXES[: model.mesh.dimension]
+        ]
+        result += [
+            *forces,
+            Column(f"contact_area:{name}", f"contact area of {name}", "area"),
+            Column(f"contact_pressure:{name}", f"largest contact pressure of {name}", "stress"),
+            Column(f"contact_distance:{name}", f"smallest distance of {name}", "length"),
+        ]
     for measure in measures:
         printed_unit(measure.kind)
         result.append(Column(measure.name, measure.name.replace("_", " "), measure.kind))
@@ -159,6 +171,11 @@ def columns(model: Model, programme: Programme, measures: Sequence[Measure]) -> 
         Column("load_work", "work of loads and moved supports", "energy"),
         Column("viscous_loss", "energy lost in viscosity", "energy"),
     ]
+    if model.contacts:
+        result += [
+            Column("contact_energy", "energy in contact", "energy"),
+            Column("friction_loss", "energy lost in friction", "energy"),
+        ]
     if any(phase.inertia for phase in programme.phases):
         result += [
             Column("kinetic_energy", "kinetic energy", "energy"),
@@ -191,12 +208,21 @@ def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
         if isinstance(surface.cavity.supply, FlowSupply):
             result[f"source:{cavity}"] = float(state.values.get(cavity, 0.0))
     result |= {f"value:{n}": float(state.values.get(n, 0.0)) for n in state.model.kinds if n not in surfaces}
+    for contact in state.model.contacts:
+        touch = state.touches.get(contact.name, NO_TOUCH)
+        for axis, force in zip(AXES, touch.force or (0.0,) * state.model.mesh.dimension, strict=False):
+            result[f"contact_force_{axis}:{contact.name}"] = force
+        result[f"contact_area:{contact.name}"] = touch.area
+        result[f"contact_pressure:{contact.name}"] = touch.pressure
+        result[f"contact_distance:{contact.name}"] = touch.distance if math.isfinite(touch.distance) else math.nan
     result |= {measure.name: float(measure(state)) for measure in measures}
     return result | {
         "strain_energy": energies.strain,
         "supply_work": energies.supply,
         "load_work": energies.load,
         "viscous_loss": energies.viscous,
+        "contact_energy": energies.contact,
+        "friction_loss": energies.friction,
         "kinetic_energy": energies.kinetic,
         "numerical_loss": energies.numerical,
         "energy_error": energies.relative_error,

@@ -164,6 +164,7 @@ def describe(model: Model) -> dict[str, Any]:
         "pressure": model.pressure,
         "tubes": encode(model.tubes, "tubes"),
         "atmosphere": encode(model.atmosphere, "atmosphere"),
+        "contacts": encode(model.contacts, "contacts"),
     }
 
 

@@ -29,6 +29,7 @@ _MATERIALS = {
     "finger": {"body": "lsr-finger"},
     "hexagonal-prism": {"body": "shore-a45-platinum"},
     "pneunet": {"body": "ecoflex-pneunet", "base": "pdms-pneunet"},
+    "skinned-tube": {"tube": "ecoflex-00-30-tube", "skin": "hei-cast-8400-skin", "cap": "auxetic-end-cap"},
 }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from pneumorph.errors import NameNotFoundError, StudyError, unknown_name
-from pneumorph.geometry import Actuator, Finger, PneuNet
+from pneumorph.geometry import Actuator, BendingSkin, Finger, PneuNet
 from pneumorph.measures import (
     ChordAngle,
     Curvature,
@@ -42,7 +42,7 @@ _MEASURES: dict[str, tuple[tuple[str, ...], Callable[[Vector | None], Measure]]]
 }
 _DEFAULT = ("tip_rotation", "chord_angle")
 # templates that bend one way: angles about this axis have a sign and count full turns
-_AXES: dict[type[Actuator], Vector] = {Finger: (0.0, 1.0, 0.0), PneuNet: (0.0, 1.0, 0.0)}
+_AXES: dict[type[Actuator], Vector] = {Finger: (0.0, 1.0, 0.0), PneuNet: (0.0, 1.0, 0.0), BendingSkin: (0.0, -1.0, 0.0)}
 
 
 def measures_of(names: Sequence[str] | None, actuator: Actuator) -> tuple[Measure, ...]:

@@ -21,7 +21,7 @@ from pydantic import (
 )
 
 from pneumorph.errors import UnitError
-from pneumorph.geometry import Actuator, Finger, HexagonalPrism, PneuNet, ThickSphere, ThickTube
+from pneumorph.geometry import Actuator, BendingSkin, Finger, HexagonalPrism, PneuNet, ThickSphere, ThickTube
 from pneumorph.materials import LAWS, Prony
 from pneumorph.mechanics import Settings
 from pneumorph.studies.direction import Direction
@@ -35,6 +35,7 @@ TEMPLATES: dict[str, type[Actuator]] = {
     "finger": Finger,
     "hexagonal-prism": HexagonalPrism,
     "pneunet": PneuNet,
+    "skinned-tube": BendingSkin,
     "thick-sphere": ThickSphere,
     "thick-tube": ThickTube,
 }

@@ -23,6 +23,7 @@ _CHOICES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
         "finger": {"targets": {"cavity": "40 kPa"}},
         "hexagonal-prism": {"targets": {"cavity_1": "40 kPa", "cavity_2": "40 kPa"}},
         "pneunet": {"targets": {"cavity": "4 kPa"}},
+        "skinned-tube": {"actuator": {"half": True}, "targets": {"cavity": "10 kPa"}},
         # a whole sphere has no face to hold it by
         "thick-sphere": {"actuator": {"octant": True}, "material": _SILICONE, "targets": {"cavity": "40 kPa"}},
         "thick-tube": {"actuator": {"quarter": True}, "material": _SILICONE, "targets": {"cavity": "40 kPa"}},

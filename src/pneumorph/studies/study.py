@@ -71,7 +71,7 @@ class Study:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "file", completed(self.file, self.actuator))
-        _ = self.materials, self.supports, self.loads, self.cavities, self.measures
+        _ = self.materials, self.supports, self.loads, self.cavities, self.measures, self.settings
         supplies = {cavity.name: cavity.supply for cavity in self.cavities}
         check_tubes(self.tubes, supplies)
         for phase in self.file.phase:

@@ -1,0 +1,103 @@
+"""Tube under a lattice skin of two halves, re-entrant and honeycomb, that bends (Pu et al. 2024)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from pneumorph.errors import GeometryError
+from pneumorph.geometry.actuator import Actuator, millimetres, whole_number
+from pneumorph.geometry.lattice import SkinnedTube, halves, skinned_tube
+from pneumorph.geometry.occ import Shape
+
+
+@dataclass(frozen=True)
+class BendingSkin(Actuator):
+    """Soft tube with a stiff lattice skin that bends away from its re-entrant half; lengths in mm.
+
+    The tube stands on the face "clamp" (z = 0, end faces of tube and skin) and ends in "tip". Around lie the re-entrant
+    cells, their middle at x > 0, then the honeycomb ones. Inside its ends sit stiff discs (domain "cap"; their
+    outsides are "clamp_cap" and "tip_cap"). The tube between the beams is "outer", the skin's surface "skin". `half`
+    keeps y >= 0 with the cut face "symmetry_y"; its cavity holds half the volume. It is meshed from its flat map
+    (see `mesh.skinned`) and has no CAD solid. Other maps: `geometry.lattice`.
+
+    reentrant: share of the columns around that are re-entrant, 0 to 1; a whole number of columns.
+    cg: gap of a cell over its height, above 0 to 0.5, where both kinds are the same brick.
+    half: keep the part with y >= 0 only, cut in the plane of symmetry.
+
+    Source: Pu, Zheng, Hu, Tang, An, Materials & Design 246 (2024) 113334, Table 1. Raises GeometryError.
+    """
+
+    cells_along: int = whole_number(7, "nv", "cells along the tube", given=True)
+    cells_around: int = whole_number(12, "nh", "columns of cells around the tube", given=True)
+    reentrant: float = field(default=0.5, metadata={"help": "share of the columns that are re-entrant, 0 to 1"})
+    cg: float = field(default=0.2, metadata={"help": "gap of a cell over its height, at most 0.5"})
+    length: float = millimetres(104.3, "L", "whole length", given=True)
+    radius: float = millimetres(14.5, "R", "outer radius of the tube", given=True)
+    wall: float = millimetres(2.0, "t", "wall of the tube", given=True)
+    depth: float = millimetres(2.0, "a", "depth of the beams, radial", given=True)
+    beam: float = millimetres(1.57, "b", "width of the straight beams", given=True)
+    cap: float = millimetres(2.0, "c", "thickness of the discs in the ends", given=True)
+    half: bool = field(default=False, metadata={"help": "keep the part with y >= 0 only, cut in the plane of symmetry"})
+
+    def _check_fit(self) -> None:
+        self._require(isinstance(self.half, bool), f"half = {self.half!r}: expected True or False")
+        for name, allowed in (("cg", "above 0, at most 0.5"), ("reentrant", "from 0 to 1")):
+            value = getattr(self, name)
+            number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+            self._require(number, f"{name} = {value!r}: expected a number {allowed}")
+        columns = self.reentrant * self.cells_around
+        self._require(
+            0.0 <= self.reentrant <= 1.0 and abs(columns - round(columns)) < 1e-6,
+            f"reentrant = {self.reentrant:g} of cells_around = {self.cells_around} makes {columns:g} columns: expected "
+            "a whole number of them, none to all",
+        )
+        _ = self.tube
+
+    @cached_property
+    def tube(self) -> SkinnedTube:
+        """The tube with the flat sheet of its skin."""
+        cells = halves(
+            self.cells_along, self.cells_around, self.cg, reentrant=round(self.reentrant * self.cells_around)
+        )
+        return skinned_tube(
+            cells, length=self.length, radius=self.radius, beam=self.beam, depth=self.depth, wall=self.wall,
+            cap=self.cap,
+        )  # fmt: skip
+
+    @property
+    def cavities(self) -> tuple[str, ...]:
+        """The one cavity."""
+        return ("cavity",)
+
+    @property
+    def face_names(self) -> tuple[str, ...]:
+        """clamp, tip, their caps, cavity, outer, skin and the symmetry plane of a half."""
+        names = ("clamp", "tip", "clamp_cap", "tip_cap", "cavity", "outer", "skin")
+        return (*names, "symmetry_y") if self.half else names
+
+    @property
+    def domains(self) -> tuple[str, ...]:
+        """tube, skin and cap."""
+        return ("tube", "skin", "cap")
+
+    @property
+    def bending_walls(self) -> Mapping[str, float]:
+        """The wall of the tube."""
+        return {"wall": self.wall}
+
+    @property
+    def default_size(self) -> float:
+        """A quarter of the height of a cell."""
+        return self.tube.lattice.height / 4.0
+
+    @property
+    def cavity_volume(self) -> float:
+        """Volume between the caps, of the half if it is one, mm³."""
+        return self.tube.cavity_volume / (2.0 if self.half else 1.0)
+
+    def shape(self) -> Shape:
+        """Raise GeometryError: there is no CAD solid."""
+        raise GeometryError("BendingSkin: it is meshed from its flat map and has no CAD solid: export its mesh instead")

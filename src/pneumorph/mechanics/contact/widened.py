@@ -1,0 +1,65 @@
+"""The pattern of the tangent with room for pairs of nodes in contact, on top of that of the cells."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumorph.mechanics.contact.part import Entries
+from pneumorph.mechanics.pattern import Pattern
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class WidenedPattern:
+    """A pattern that grows, and puts values in the order of the cells' pattern at their places in it.
+
+    It is never made smaller: each growth costs an analysis of the linear solver.
+    """
+
+    def __init__(self, base: Pattern):
+        self.base = self.pattern = base
+        self._places: Integers | None = None
+
+    def missing(self, entries: Entries) -> Integers:
+        """Return the pairs of nodes (k, 2) of matrix entries that have no place."""
+        d, nodes = self.base.dimension, self.base.nodes
+        first, second = entries[0] // d, entries[1] // d
+        keys = np.unique((first * nodes + second)[first != second])
+        keys = keys[~np.isin(keys, self.pattern.keys, assume_unique=True)]
+        return np.column_stack([keys // nodes, keys % nodes])
+
+    def include(self, pairs: Integers) -> bool:
+        """Give places to pairs of nodes (k, 2), first < second; return whether the pattern had to grow."""
+        nodes = self.base.nodes
+        keys = np.union1d(self.pattern.keys, pairs[:, 0] * nodes + pairs[:, 1])
+        if len(keys) == len(self.pattern.keys):
+            return False
+        start = np.searchsorted(keys, np.arange(nodes + 1) * nodes)
+        self.pattern = Pattern(nodes, self.base.dimension, keys, start)
+        # the base's values in a row keep their order: find the columns of each in the wider row
+        rows = np.repeat(np.arange(nodes * self.base.dimension), np.diff(self.base.indptr))
+        self._places = self._place(rows, self.base.indices.astype(np.int64))
+        return True
+
+    def _place(self, rows: Integers, columns: Integers) -> Integers:
+        """Return where entries of the upper triangle stand among the values; they must have a place."""
+        wide, d = self.pattern, self.base.dimension
+        first, second = rows // d, columns // d
+        own = first == second
+        rank = np.searchsorted(wide.keys, first * wide.nodes + second) - wide.start[first]
+        return wide.indptr[rows] + np.where(own, columns - rows, d - rows % d + d * rank + columns % d)
+
+    def widen(self, values: Array) -> Array:
+        """Return values in the order of the base's pattern in that of this one."""
+        if self._places is None:
+            return values
+        result = np.zeros(self.pattern.indptr[-1])
+        result[self._places] = values
+        return result
+
+    def add(self, entries: Entries, values: Array) -> None:
+        """Add matrix entries (upper triangle) to values in the order of this pattern."""
+        rows, columns, numbers = entries
+        values += np.bincount(self._place(rows, columns), numbers, len(values))
