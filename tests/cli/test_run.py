@@ -13,6 +13,7 @@ from types import SimpleNamespace
 import pytest
 from rich.console import Console
 
+from pneumorph.cli.interrupt import Interrupt
 from pneumorph.cli.progress import clock, facts, plain_line, progress_on
 from pneumorph.measures import ChordAngle
 from pneumorph.solution import Solution, Status
@@ -74,14 +75,22 @@ def test_ctrl_c_says_how_to_go_on(study, tmp_path):
     end = time.monotonic() + 60.0
     while not (tmp_path / "out" / "states" / "state_00002.vtkhdf").exists() and time.monotonic() < end:
         time.sleep(0.05)
-    for _ in range(10):  # an interrupt that meets a destructor is lost: press again
-        run.send_signal(signal.SIGINT)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            _, complaint = run.communicate(timeout=5)
-            break
+    run.send_signal(signal.SIGINT)
+    _, complaint = run.communicate(timeout=60)
     assert run.returncode == 130
     assert f"go on with: pneumorph run {study} --out {tmp_path / 'out'} --resume" in complaint
     assert "Traceback" not in complaint
+
+
+def test_an_interrupt_that_is_dropped_is_raised_at_the_next_state():
+    with Interrupt() as interrupt:
+        interrupt.check()
+        with contextlib.suppress(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
+        with pytest.raises(KeyboardInterrupt):
+            interrupt.check()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_the_version_is_printed(pneumorph):

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import typer
 
+from pneumorph.cli.interrupt import Interrupt
 from pneumorph.cli.output import INTERRUPTED, STOPPED, complain, console
 from pneumorph.cli.progress import progress_on
-from pneumorph.solution import Solution, Status
+from pneumorph.solution import Progress, Solution, Status
 from pneumorph.studies import Study, run_study
 
 
@@ -28,12 +29,17 @@ def solve_and_report(
     out = console()
     out.print(f"{study.title}\nfolder: {folder}", markup=False)
     try:
-        with progress_on(out, study.measures) as progress:
+        with Interrupt() as interrupt, progress_on(out, study.measures) as progress:
+
+            def told(news: Progress) -> None:
+                progress(news)
+                interrupt.check()
+
             solution = run_study(
                 study,
                 folder,
                 resume=resume,
-                progress=progress,
+                progress=told,
                 about={**(about or {}), "command": command},
                 raise_on_stop=False,
             )
