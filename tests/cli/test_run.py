@@ -70,8 +70,9 @@ def test_ctrl_c_says_how_to_go_on(study, tmp_path):
     study.write_text(study.read_text().replace("_increment = 0.5", "_increment = 0.001"))
     command = [sys.executable, "-c", "from pneumorph.cli.app import main; main()", "run", str(study)]
     run = subprocess.Popen(
-        [*command, "--out", str(tmp_path / "out")], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-    )
+        [*command, "--out", str(tmp_path / "out")], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # jobs in the background ignore it
+    )  # fmt: skip
     end = time.monotonic() + 60.0
     while not (tmp_path / "out" / "states" / "state_00002.vtkhdf").exists() and time.monotonic() < end:
         time.sleep(0.05)
@@ -82,7 +83,15 @@ def test_ctrl_c_says_how_to_go_on(study, tmp_path):
     assert "Traceback" not in complaint
 
 
-def test_an_interrupt_that_is_dropped_is_raised_at_the_next_state():
+@pytest.fixture
+def listening():
+    """Ctrl-C as in the foreground, also where the tests run in the background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_an_interrupt_that_is_dropped_is_raised_at_the_next_state(listening):
     with Interrupt() as interrupt:
         interrupt.check()
         with contextlib.suppress(KeyboardInterrupt):
@@ -141,3 +150,9 @@ def test_a_terminal_gets_a_live_display():
     shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", screen.getvalue())
     for text in ("42 %", "inflate", "40 kPa", "28.65 deg", "4 (31 in all)", "not known yet"):
         assert text in shown
+
+
+def test_a_job_that_ignores_ctrl_c_goes_on_ignoring_it(listening):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with Interrupt():
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN

@@ -12,7 +12,7 @@ class Interrupt:
     """While it is open, Ctrl-C is remembered as well as raised.
 
     Python drops a KeyboardInterrupt that meets a destructor or a callback from C. `check`, called at each state, raises
-    it again then. Outside the main thread nothing changes.
+    it again then. Outside the main thread, and in a job started with Ctrl-C ignored, nothing changes.
     """
 
     def __init__(self) -> None:
@@ -20,7 +20,8 @@ class Interrupt:
         self._before: Any = None
 
     def __enter__(self) -> Interrupt:
-        if threading.current_thread() is threading.main_thread():
+        main = threading.current_thread() is threading.main_thread()
+        if main and signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
             self._before = signal.signal(signal.SIGINT, self._press)
         return self
 
