@@ -74,9 +74,9 @@ def _young(entry: LibraryEntry) -> float:
 
 
 def _law(entry: LibraryEntry) -> str:
-    from pneumorph.materials import library
+    from pneumorph.materials.laws import law_name
 
-    return next(name for name, law in library.LAWS.items() if type(entry.material) is law)
+    return str(law_name(entry.material))
 
 
 def _list(entries: list[LibraryEntry]) -> Any:

@@ -22,3 +22,8 @@ LAWS: dict[str, type[Material]] = {
     "ogden": Ogden,
     "yeoh": Yeoh,
 }
+
+
+def law_name(material: Material) -> str | None:
+    """Return the name of a material's law in study files; None for a class that these do not name."""
+    return next((name for name, law in LAWS.items() if law is type(material)), None)

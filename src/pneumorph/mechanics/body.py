@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumorph.materials import Material
+from pneumorph.materials.prony import ViscousStep
 from pneumorph.mechanics import kernels
 from pneumorph.mechanics.pattern import Pattern
 from pneumorph.mechanics.tables import CellTable, cell_table
@@ -102,9 +103,8 @@ class Body:
                 table = piece.table
                 c, _ = self._deformation(piece, position)
                 stress, moduli = piece.material.stress_and_tangent(c.reshape(-1, 6))
-                if memory and seconds > 0.0 and piece.material.prony is not None:
-                    old = memory[piece.block][:, piece.part].reshape(-1, len(stress), 6)
-                    step = piece.material.prony.step(seconds, old[1:], old[0], stress)
+                step = _viscous_step(piece, memory, stress, seconds)
+                if step is not None:
                     stress = step.factor * stress + step.history
                     moduli *= step.factor
                 count, modes, nodes = len(piece.cells), table.modes.shape[1], piece.cells.shape[1]
@@ -145,9 +145,8 @@ class Body:
             stress, _ = piece.material.stress_and_tangent(c.reshape(-1, 6))
             new = result[piece.block][:, piece.part]
             new[0] = stress.reshape(c.shape)
-            if seconds > 0.0:
-                old = memory[piece.block][:, piece.part].reshape(-1, len(stress), 6)
-                step = piece.material.prony.step(seconds, old[1:], old[0], stress)
+            step = _viscous_step(piece, memory, stress, seconds)
+            if step is not None:
                 new[1:] = step.overstress.reshape(-1, *c.shape)
         return result
 
@@ -209,6 +208,15 @@ class Body:
         ratio = np.empty(c.shape[:2])
         smallest = kernels.deformation(piece.sizes, self.mesh.points, position, piece.cells, shape, gradient, c, ratio)
         return c, smallest
+
+
+def _viscous_step(piece: Piece, memory: list[Array] | None, stress: Array, seconds: float) -> ViscousStep | None:
+    """Return the step of the overstresses to an elastic stress (n, 6); None without memory, time or a Prony series."""
+    prony = piece.material.prony
+    if not memory or seconds <= 0.0 or prony is None:
+        return None
+    old = memory[piece.block][:, piece.part].reshape(-1, len(stress), 6)
+    return prony.step(seconds, old[1:], old[0], stress)
 
 
 def cell_volumes(mesh: Mesh, block: CellBlock, rule: tuple[Array, Array, Array] | None = None) -> Array:

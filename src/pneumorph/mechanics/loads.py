@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pneumorph.errors import InputError
 from pneumorph.materials import Material
 from pneumorph.mechanics.body import cell_volumes
-from pneumorph.mechanics.tables import cell_table, face_table
+from pneumorph.mechanics.tables import cell_table, face_sizes, face_table
 from pneumorph.mesh.mesh import Mesh
 
 Array = NDArray[np.float64]
@@ -37,7 +37,8 @@ class Gravity:
     def pattern(self, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
         """Return nodal forces (nodes * d,) for an acceleration of 1 mm/s2."""
         direction = _unit(self.direction, mesh, f"gravity '{self.name}'")
-        mass = lumped_mass(mesh, {name: _density(material, name) for name, material in materials.items()}, False)
+        densities = {name: density_of(material, name, "gravity") for name, material in materials.items()}
+        mass = lumped_mass(mesh, densities, False)
         return np.outer(mass, direction).ravel()
 
 
@@ -73,9 +74,10 @@ class Force:
 Load = Gravity | Traction | Force
 
 
-def _density(material: Material, domain: str) -> float:
+def density_of(material: Material, domain: str, use: str) -> float:
+    """Return the density, tonne/mm3; raises InputError, naming what it is needed for, where there is none."""
     if material.density is None:
-        raise InputError(f"gravity needs a density for the material of '{domain}', which has none")
+        raise InputError(f"{use} needs a density for the material of '{domain}', which has none")
     return material.density
 
 
@@ -104,12 +106,8 @@ def _areas(mesh: Mesh, face: str) -> Array:
     for block in mesh.face_blocks(face):
         shape, gradient, weight = face_table(block.kind)
         x = mesh.points[block.nodes]
-        tangent = np.einsum("qmj,emi->eqij", gradient, x)
-        if mesh.dimension == 3:
-            size = np.linalg.norm(np.cross(tangent[..., 0], tangent[..., 1]), axis=-1)
-        else:
-            size = np.linalg.norm(tangent[..., 0], axis=-1)
-            if mesh.space == "axisymmetric":
-                size = size * 2 * np.pi * np.einsum("qm,em->eq", shape, x[:, :, 0])
+        size = face_sizes(x, gradient)
+        if mesh.space == "axisymmetric":
+            size = size * 2 * np.pi * np.einsum("qm,em->eq", shape, x[:, :, 0])
         np.add.at(areas, block.nodes, np.einsum("eq,q,qm->em", size, weight, shape))
     return areas

@@ -8,8 +8,8 @@ import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
 
-from pneumorph.errors import InputError
 from pneumorph.mechanics.body import cell_volumes
+from pneumorph.mechanics.loads import density_of
 from pneumorph.mechanics.model import Model
 from pneumorph.mechanics.tables import mass_rule
 
@@ -23,14 +23,14 @@ class Mass:
     """
 
     def __init__(self, model: Model):
-        check_densities(model)
+        densities = densities_of(model)
         self._pattern = model.body.pattern
         nodes = len(model.mesh.points)
         self._own = np.zeros(nodes)
         self._shared = np.zeros(len(self._pattern.keys))
         for block in model.mesh.blocks:
             rule = mass_rule(block.kind)
-            weights = (model.materials[block.domain].density or 0.0) * cell_volumes(model.mesh, block, rule)
+            weights = densities[block.domain] * cell_volumes(model.mesh, block, rule)
             matrices = np.einsum("eq,qa,qb->eab", weights, rule[0], rule[0])
             a, b = np.triu_indices(block.nodes.shape[1])
             first, second, share = block.nodes[:, a].ravel(), block.nodes[:, b].ravel(), matrices[:, a, b].ravel()
@@ -63,8 +63,6 @@ class Mass:
         return upper + upper.T + sparse.diags(self._own, format="csr")
 
 
-def check_densities(model: Model) -> None:
-    """Raise an InputError for a material without a density."""
-    for domain, material in model.materials.items():
-        if material.density is None:
-            raise InputError(f"inertia needs a density for the material of '{domain}', which has none")
+def densities_of(model: Model) -> dict[str, float]:
+    """Return domain -> density, tonne/mm3; raises InputError for a material without one."""
+    return {domain: density_of(material, domain, "inertia") for domain, material in model.materials.items()}

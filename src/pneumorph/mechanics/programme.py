@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pneumorph.errors import InputError, NameNotFoundError, unknown_name
 from pneumorph.mechanics.dynamics import SCHEMES
-from pneumorph.mechanics.mass import check_densities
+from pneumorph.mechanics.mass import densities_of
 from pneumorph.mechanics.model import Model
 from pneumorph.mechanics.supplies.checks import check_masses, check_phases
 from pneumorph.mechanics.supplies.network import gas_at_rest
@@ -82,7 +82,7 @@ class Programme:
                 if name not in model.kinds:
                     raise NameNotFoundError(f"phase '{phase.name}': " + unknown_name("target", name, model.kinds))
         if any(phase.inertia for phase in self.phases):
-            check_densities(model)
+            densities_of(model)
         for name in model.kinds:
             if name not in driven and name not in model.surfaces:
                 raise InputError(f"'{name}' is in the model, but no phase drives it")

@@ -95,6 +95,14 @@ def face_table(kind: str) -> tuple[Array, Array, Array]:
     return shape, gradient, weight
 
 
+def face_sizes(x: Array, gradient: Array) -> Array:
+    """Return area or length over that of the reference face (m, q) at faces with nodes x (m, n, d), of one shape."""
+    tangent = np.einsum("qmj,emi->eqij", gradient, x)
+    if x.shape[2] == 3:
+        return np.asarray(np.linalg.norm(np.cross(tangent[..., 0], tangent[..., 1]), axis=-1))
+    return np.asarray(np.linalg.norm(tangent[..., 0], axis=-1))
+
+
 @cache
 def mass_rule(kind: str) -> tuple[Array, Array, Array]:
     """Return shape (q, n), gradient (q, n, d) and weight (q,) of a rule for products of two shape functions."""

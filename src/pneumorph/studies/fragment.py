@@ -6,6 +6,7 @@ from dataclasses import fields
 
 from pneumorph.errors import InputError
 from pneumorph.materials import LAWS, Material
+from pneumorph.materials.laws import law_name
 from pneumorph.studies.section import section_of
 from pneumorph.studies.writing import to_toml
 
@@ -22,7 +23,7 @@ def material_fragment(material: Material, domain: str | None = None) -> str:
     c10 = "0.11 MPa"
     c20 = "0.02 MPa"
     """
-    name = next((key for key, law in LAWS.items() if law is type(material)), None)
+    name = law_name(material)
     if name is None:
         raise InputError(f"material = {material!r}, allowed: one of the laws {', '.join(sorted(LAWS))}")
     given = {

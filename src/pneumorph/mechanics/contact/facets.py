@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumorph.mechanics.tables import reference_nodes, tabulate
+from pneumorph.mechanics.tables import face_sizes, reference_nodes, tabulate
 from pneumorph.mesh.mesh import FaceBlock, Mesh
 
 Array = NDArray[np.float64]
@@ -63,11 +63,7 @@ def force_points(mesh: Mesh, blocks: Iterable[FaceBlock]) -> list[Points]:
             places = np.vstack([places, [1 / 3, 1 / 3]])
         shape, gradient = tabulate(block.kind, places)
         x = mesh.points[block.nodes]
-        tangent = np.einsum("qmj,emi->eqij", gradient, x)
-        if mesh.dimension == 3:
-            size = np.linalg.norm(np.cross(tangent[..., 0], tangent[..., 1]), axis=-1)
-        else:
-            size = np.linalg.norm(tangent[..., 0], axis=-1)
+        size = face_sizes(x, gradient)
         if mesh.space == "axisymmetric":
             radius = np.einsum("qm,em->eq", shape, x[:, :, 0])
             size = size * 2.0 * np.pi * np.maximum(radius, 0.01 * radius.max(axis=1, keepdims=True))  # the axis, too
