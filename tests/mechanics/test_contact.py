@@ -73,8 +73,9 @@ def test_a_block_under_a_smooth_plate_has_one_uniform_stress(kind):
     touch = last.touches["plate"]
     # incompressible: the area grows as the height shrinks; the material is nearly so
     assert touch.force[2] == pytest.approx(stress[0] / (1 - last.displacement[:, 2].min() * -1), rel=0.01)
-    assert touch.pressure == pytest.approx(-touch.force[2], rel=1e-6)
-    assert touch.area == pytest.approx(1.0)
+    assert touch.area == pytest.approx(1.0 / (1.0 + last.displacement[:, 2].min()), rel=1e-3)
+    assert touch.pressure == pytest.approx(-touch.force[2] / touch.area, rel=1e-6)
+    assert touch.pressure == pytest.approx(-stress[0], rel=1e-3)
     assert last.reactions.reshape(-1, 3).sum(axis=0) == pytest.approx(-np.array(touch.force), abs=1e-8)
 
 
@@ -257,10 +258,11 @@ def test_pressure_in_a_ring_that_fills_a_bore_goes_on_to_the_bore():
     )
     states = list(march(model, programme))
     filled = next(state for state in reversed(states) if state.phase == "fill")
-    assert filled.touches["bore"].area == pytest.approx(np.pi / 2, rel=1e-4)
+    outer = 1.01
+    assert filled.touches["bore"].area == pytest.approx(np.pi / 2 * outer, rel=2e-3)
     # on a quarter, the pressure times the radius is the force in x and in y
     more = np.array(states[-1].touches["bore"].force) - np.array(filled.touches["bore"].force)
-    outer = 1.01  # the force points bear reference areas, 1 % less
+    assert states[-1].touches["bore"].pressure - filled.touches["bore"].pressure == pytest.approx(0.3, rel=0.02)
     assert more == pytest.approx([-0.3 * outer, -0.3 * outer], rel=0.02)
 
 

@@ -73,6 +73,34 @@ def test_tangent_and_pressure_update_are_the_slopes_of_the_residual(mesh, pressu
     assert np.abs(tangent - tangent.T).max() < 1e-12
 
 
+def test_carried_stresses_are_the_slope_of_the_stresses(mesh):
+    """Along a step the stresses change by what is carried, and by second order in the step."""
+    body = Body(mesh, {mesh.domains[0]: Yeoh(0.11, 0.03, bulk=30.0)})
+    position = moved(mesh)
+    here = body.assemble(position, body.zero_pressure())
+    still = body.carry(here, position, np.zeros_like(position))
+    step, memory = 1e-6, body.zero_memory()
+    for direction in np.random.default_rng(4).standard_normal((3, *position.shape)):
+        carried = body.carry(here, position, direction)
+        plus = body.stresses(position + step * direction, memory)
+        minus = body.stresses(position - step * direction, memory)
+        for a, b, c, d in zip(plus, minus, carried, still, strict=True):
+            slope = c - d
+            assert np.abs(slope).min(axis=(0, 1))[:3].max() > 1e-4
+            assert (a - b) / (2.0 * step) == pytest.approx(slope, abs=1e-6 * np.abs(slope).max())
+
+
+def test_the_tangent_takes_the_carried_stresses_and_the_residual_does_not(mesh):
+    body = Body(mesh, {mesh.domains[0]: NeoHookean(0.3, bulk=5.0)})
+    position, modes = moved(mesh), body.zero_pressure()
+    here = body.assemble(position, modes)
+    same = body.assemble(position, modes, carried=body.stresses(position, body.zero_memory()))
+    other = body.assemble(position, modes, carried=[2.0 * s for s in body.stresses(position, body.zero_memory())])
+    assert same.values == pytest.approx(here.values, rel=1e-12)
+    assert (other.force == here.force).all()
+    assert np.abs(other.values - here.values).max() > 1e-3 * np.abs(here.values).max()
+
+
 def shell(kind):
     """A mesh whose outer boundary is taken for a cavity's wall turned inside out: volumes come out negative."""
     if kind == "solid":

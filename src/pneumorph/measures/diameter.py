@@ -11,6 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 from pneumorph.errors import InputError
 from pneumorph.measures.centre_line import axis_of
 from pneumorph.measures.faces import best_rotation
+from pneumorph.measures.mirrors import completed, planes
 from pneumorph.mechanics import State
 
 Array = NDArray[np.float64]
@@ -88,7 +89,9 @@ class Diameter:
             return None
         if revolved:
             return 2.0 * float(deformed[:, 0].max())
-        rotation = best_rotation(reference, deformed, np.ones(len(cut)))
+        mirrors = planes(state, chord)
+        reference, deformed = completed(reference, mirrors), completed(deformed, mirrors)
+        rotation = best_rotation(reference, deformed, np.ones(len(reference)))
         across = np.linalg.svd((chord / np.linalg.norm(chord))[None, :])[2][1:] @ rotation.T
         projected = deformed @ across.T
         return float(np.ptp(projected)) if d == 2 else enclosing_diameter(projected)

@@ -5,8 +5,8 @@ from pneumorph.mechanics.contact import Block, Contact, Cylinder, HalfSpace, Mot
 from pneumorph.mechanics.continuation import march
 from pneumorph.mechanics.loads import Force, Gravity, Traction
 from pneumorph.mechanics.model import Model
-from pneumorph.mechanics.newton import Settings
 from pneumorph.mechanics.programme import Phase, Programme
+from pneumorph.mechanics.settings import Settings
 from pneumorph.mechanics.state import Energies, State
 from pneumorph.mechanics.supplies import (
     Atmosphere,

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumorph.materials import Material
+from pneumorph.materials.material import PointLaw
 from pneumorph.materials.prony import ViscousStep
 from pneumorph.mechanics import kernels
 from pneumorph.mechanics.pattern import Pattern
 from pneumorph.mechanics.tables import CellTable, cell_table
-from pneumorph.mechanics.volumetric import split_bulk
+from pneumorph.mechanics.volumetric import local_pressure, split_bulk
 from pneumorph.mesh.mesh import CellBlock, Mesh
 from pneumorph.threads import parallel, slices
 
@@ -24,11 +25,13 @@ class Piece:
     """One thread's cells of one block.
 
     slots: where their matrices go in the pattern; bulk: moduli of pressure modes and points, see `volumetric`.
+    law: the material at the quadrature points of the cells.
     """
 
     cells: NDArray[np.int64]
     slots: NDArray[np.int32]
     material: Material
+    law: PointLaw
     table: CellTable
     bulk: tuple[float, float]
     sizes: tuple[tuple[int, ...], ...]
@@ -42,11 +45,13 @@ class Assembly:
 
     force (nodes * d,): internal force with the pressure condensed; values: tangent in the pattern's order;
     gains: for each piece K M^-1 r_q (cells, k) and K M^-1 B' (cells, k, d, n), for the pressure update.
+    stresses: for each piece S and U' (cells, q, 7) and the moduli dS/dE (cells, q, 21), for `carry`.
     """
 
     force: Array
     values: Array
     gains: list[tuple[Array, Array]]
+    stresses: list[tuple[Array, Array]]
 
 
 class Body:
@@ -76,7 +81,9 @@ class Body:
             )
             for thread, part in enumerate(slices(len(block.nodes))):
                 cells = np.ascontiguousarray(block.nodes[part], dtype=np.int64)
-                piece = Piece(cells, self.pattern.slots(cells), material, table, split_bulk(material), sizes, i, part)
+                law = material.at(quadrature_places(self.mesh, cells, table))
+                bulk = split_bulk(material)
+                piece = Piece(cells, self.pattern.slots(cells), material, law, table, bulk, sizes, i, part)
                 if thread == len(teams):
                     teams.append([])
                 teams[thread].append(piece)
@@ -89,34 +96,37 @@ class Body:
 
     def assemble(
         self, position: Array, pressure: list[Array], tangent: bool = True, *, memory: list[Array] | None = None,
-        seconds: float = 0.0,
+        seconds: float = 0.0, carried: list[Array] | None = None,
     ) -> Assembly:  # fmt: skip
         """Return internal forces and, with `tangent`, the stiffness at deformed nodes (nodes, d).
 
         memory, seconds: what viscous materials remember (see `State`), and the time since; none: no time limits them.
+        carried: stresses of the tangent's geometric part (see `carry`), one array a block; None takes the present ones.
         """
         points = self.mesh.points
 
         def work(team: list[Piece]) -> Assembly:
-            result = Assembly(np.zeros(self.unknowns), np.zeros(self.pattern.indptr[-1] if tangent else 0), [])
+            result = Assembly(np.zeros(self.unknowns), np.zeros(self.pattern.indptr[-1] if tangent else 0), [], [])
             for piece in team:
                 table = piece.table
-                c, _ = self._deformation(piece, position)
-                stress, moduli = piece.material.stress_and_tangent(c.reshape(-1, 6))
+                c, ratio, _ = self._deformation(piece, position)
+                stress, moduli = piece.law.stress_and_tangent(c.reshape(-1, 6))
                 step = _viscous_step(piece, memory, stress, seconds)
                 if step is not None:
                     stress = step.factor * stress + step.history
                     moduli *= step.factor
+                own, moduli = _with_local(piece, stress, ratio), moduli.reshape(*ratio.shape, 21)
                 count, modes, nodes = len(piece.cells), table.modes.shape[1], piece.cells.shape[1]
                 constant = np.zeros((count, modes) if tangent else (0, modes))
                 gain = np.zeros((count if tangent else 0, modes, self.dimension, nodes))
                 kernels.integrate(
                     piece.sizes, points, position, piece.cells, table.shape, table.gradient, table.weight, table.modes,
                     *piece.bulk, pressure[piece.block][piece.part],
-                    stress.reshape(count, -1, 6), moduli.reshape(count, -1, 21), piece.slots, self.pattern.indptr,
-                    result.force, result.values, constant, gain, tangent,
+                    stress.reshape(count, -1, 6), moduli, own if carried is None else carried[piece.block][piece.part],
+                    piece.slots, self.pattern.indptr, result.force, result.values, constant, gain, tangent,
                 )  # fmt: skip
                 result.gains.append((constant, gain))
+                result.stresses.append((own, moduli))
             return result
 
         parts = parallel(work, self._teams)
@@ -125,6 +135,7 @@ class Body:
             total.force += part.force
             total.values += part.values
             total.gains += part.gains
+            total.stresses += part.stresses
         return total
 
     def zero_memory(self) -> list[Array]:
@@ -141,8 +152,8 @@ class Body:
         for piece in (piece for team in self._teams for piece in team):
             if piece.material.prony is None:
                 continue
-            c, _ = self._deformation(piece, position)
-            stress, _ = piece.material.stress_and_tangent(c.reshape(-1, 6))
+            c, *_ = self._deformation(piece, position)
+            stress, _ = piece.law.stress_and_tangent(c.reshape(-1, 6))
             new = result[piece.block][:, piece.part]
             new[0] = stress.reshape(c.shape)
             step = _viscous_step(piece, memory, stress, seconds)
@@ -173,6 +184,39 @@ class Body:
             result[piece.block][piece.part] = constant + change
         return result
 
+    def stresses(self, position: Array, memory: list[Array]) -> list[Array]:
+        """Return S and U'(J) (cells, q, 7) of each block in a state, MPa, without the pressure modes."""
+        result = self._room()
+        for piece in (piece for team in self._teams for piece in team):
+            c, ratio, _ = self._deformation(piece, position)
+            stress, _ = piece.law.stress_and_tangent(c.reshape(-1, 6))
+            if piece.material.prony is not None:
+                stress = stress + memory[piece.block][1:, piece.part].sum(axis=0).reshape(-1, 6)
+            result[piece.block][piece.part] = _with_local(piece, stress, ratio)
+        return result
+
+    def _room(self) -> list[Array]:
+        pairs = zip(self.mesh.blocks, self.tables, strict=True)
+        return [np.empty((len(block.nodes), len(table.weight), 7)) for block, table in pairs]
+
+    def carry(self, assembly: Assembly, position: Array, step: Array) -> list[Array]:
+        """Return the stresses (cells, q, 7) of each block after a step (nodes, d), to first order in the step."""
+        result = self._room()
+        numbers = iter(assembly.stresses)
+        jobs = [[(piece, *next(numbers)) for piece in team] for team in self._teams]
+
+        def work(team: list[tuple[Piece, Array, Array]]) -> None:
+            for piece, stress, moduli in team:
+                carried, table = stress.copy(), piece.table
+                kernels.advance(
+                    piece.sizes, self.mesh.points, position, step, piece.cells, table.shape, table.gradient,
+                    piece.bulk[1], moduli, carried,
+                )  # fmt: skip
+                result[piece.block][piece.part] = carried
+
+        parallel(work, jobs)
+        return result
+
     def energies(self, position: Array, pressure: list[Array]) -> tuple[float, float]:
         """Return (condensed energy max over q of L(u, q), mixed energy L(u, q)), mJ."""
 
@@ -180,8 +224,8 @@ class Body:
             total = np.zeros(2)
             for piece in team:
                 table = piece.table
-                c, _ = self._deformation(piece, position)
-                density = piece.material.energy(c.reshape(-1, 6)).reshape(c.shape[:2])
+                c, *_ = self._deformation(piece, position)
+                density = piece.law.energy(c.reshape(-1, 6)).reshape(c.shape[:2])
                 isochoric, condensed, mixed = kernels.volumetric(
                     piece.sizes, self.mesh.points, position, piece.cells, table.shape, table.gradient, table.weight,
                     table.modes, *piece.bulk, pressure[piece.block][piece.part], density,
@@ -196,18 +240,23 @@ class Body:
         """Return the smallest det F at the quadrature points or, `fine`, at those of a finer rule."""
 
         def work(team: list[Piece]) -> float:
-            return min(self._deformation(piece, position, fine)[1] for piece in team)
+            return min(self._deformation(piece, position, fine)[2] for piece in team)
 
         return min(parallel(work, self._teams))
 
-    def _deformation(self, piece: Piece, position: Array, fine: bool = False) -> tuple[Array, float]:
+    def _deformation(self, piece: Piece, position: Array, fine: bool = False) -> tuple[Array, Array, float]:
         table = piece.table
         shape = table.check_shape if fine else table.shape
         gradient = table.check_gradient if fine else table.gradient
         c = np.empty((len(piece.cells), len(shape), 6))
         ratio = np.empty(c.shape[:2])
         smallest = kernels.deformation(piece.sizes, self.mesh.points, position, piece.cells, shape, gradient, c, ratio)
-        return c, smallest
+        return c, ratio, smallest
+
+
+def _with_local(piece: Piece, stress: Array, ratio: Array) -> Array:
+    """Return S (n, 6) and U'(J) of the points in one array (cells, q, 7)."""
+    return np.concatenate([stress.reshape(*ratio.shape, 6), local_pressure(ratio, piece.bulk[1])[..., None]], axis=2)
 
 
 def _viscous_step(piece: Piece, memory: list[Array] | None, stress: Array, seconds: float) -> ViscousStep | None:
@@ -217,6 +266,12 @@ def _viscous_step(piece: Piece, memory: list[Array] | None, stress: Array, secon
         return None
     old = memory[piece.block][:, piece.part].reshape(-1, len(stress), 6)
     return prony.step(seconds, old[1:], old[0], stress)
+
+
+def quadrature_places(mesh: Mesh, cells: NDArray[np.int64], table: CellTable) -> Array:
+    """Return the reference positions (cells * q, 3), mm, of the quadrature points of cells; z = 0 in the plane."""
+    places = np.einsum("qm,emi->eqi", table.shape, mesh.points[cells]).reshape(-1, mesh.dimension)
+    return np.pad(places, ((0, 0), (0, 3 - mesh.dimension)))
 
 
 def cell_volumes(mesh: Mesh, block: CellBlock, rule: tuple[Array, Array, Array] | None = None) -> Array:

@@ -1,6 +1,6 @@
 """Load stepping: increments that grow where they are easy, are cut where they fail, and always leave a state behind.
 
-Where Newton's method finds no state (a wall or web buckles locally), a viscous term is added to the potential,
+Where Newton's method finds no state even with shifted tangents (see `shift`), a viscous term is added to the potential,
     c / 2 int |u - u_n|^2 dV,
 with u_n the displacement before: a row of such steps at fixed targets, with c falling to zero, slides the body to its
 next stable state. Only that state, in equilibrium without viscosity, is kept; what the slide dissipated is recorded.
@@ -21,10 +21,13 @@ from numpy.typing import NDArray
 
 from pneumorph.errors import NotConvergedError
 from pneumorph.mechanics.dynamics import SCHEMES, Inertia, kinetic
+from pneumorph.mechanics.increments import Converged, Increment, IncrementFailedError, Trial
 from pneumorph.mechanics.mass import Mass
 from pneumorph.mechanics.model import Model
-from pneumorph.mechanics.newton import Converged, Increment, IncrementFailedError, Newton, Settings, Trial
+from pneumorph.mechanics.newton import Newton
+from pneumorph.mechanics.prediction import Predictor
 from pneumorph.mechanics.programme import Programme
+from pneumorph.mechanics.settings import Settings
 from pneumorph.mechanics.state import Energies, State, rest
 
 Array = NDArray[np.float64]
@@ -44,12 +47,11 @@ def march(
     few = 3 * settings.few if model.contacts else settings.few  # contact is sought step by step
     newton = Newton(model, settings)
     mass = Mass(model) if any(phase.inertia for phase in programme.phases) else None
-    past = list(start[-3:])
-    if not past:
-        past = [replace(rest(model), next_increment=programme.phases[0].first)]
-        yield past[0]
-    while past[-1].time < len(programme.phases):
-        last = past[-1]
+    predictor = Predictor(start or [replace(rest(model), next_increment=programme.phases[0].first)])
+    if not start:
+        yield predictor.last
+    while predictor.last.time < len(programme.phases):
+        last = predictor.last
         number = int(last.time)
         phase = programme.phases[number]
         done = last.time - number
@@ -67,7 +69,7 @@ def march(
             step = Increment(last, seconds, inertia, time - last.time)
             try:
                 try:
-                    found = newton.solve(newton.reachable(_predict(past, time), last, values), values, step)
+                    found = newton.solve(newton.reachable(predictor.trial(time), last, values), values, step)
                 except IncrementFailedError as failure:
                     if not settings.viscosity or increment > phase.first or inertia:
                         raise
@@ -83,12 +85,12 @@ def march(
             if planned < phase.smallest:
                 raise NotConvergedError(
                     f"stopped in phase '{phase.name}' at {done:.4f} of it, state {last.index}: {reason} "
-                    f"with the smallest increment {phase.smallest:g}"
+                    f"with the smallest increment {phase.smallest:g}{model.contact.tightest(last.touches)}"
                 )
         if growth < 1.0 or (found.iterations <= few and increment >= 0.999 * planned):
             planned = min(growth * increment, phase.largest)
         state = _state(step, phase.name, time, found, values, lost, planned)
-        past = [*past[-2:], state]
+        predictor.add(state)
         yield state
 
 
@@ -152,46 +154,25 @@ def _slide(newton: Newton, step: Increment, values: dict[str, float]) -> tuple[C
     raise IncrementFailedError("viscous sliding found no equilibrium")
 
 
-def _predict(past: Sequence[State], time: float) -> Trial:
-    """Return the unknowns extrapolated through the last states of the same phase (linear, or quadratic from three)."""
-    last = past[-1]
-    same = [s for s in past if s.time >= int(last.time)]
-    weights = _lagrange([s.time for s in same], time)
-    displacement = sum(
-        (w * s.displacement for w, s in zip(weights, same, strict=True)), np.zeros_like(last.displacement)
-    )
-    modes = [
-        sum((w * s.pressure_modes[i] for w, s in zip(weights, same, strict=True)), np.zeros_like(q))
-        for i, q in enumerate(last.pressure_modes)
-    ]
-    pressure = np.array([sum(w * s.pressure[n] for w, s in zip(weights, same, strict=True)) for n in last.pressure])
-    if len(same) > 1 and last.model.body.smallest_volume_ratio(last.model.mesh.points + displacement, False) <= 0.2:
-        return _predict([last], time)
-    return Trial(displacement, modes, pressure, last.model.contact.ways(last.values))
-
-
-def _lagrange(times: Sequence[float], time: float) -> list[float]:
-    """Return the weights of the polynomial through some times, at another time."""
-    return [float(np.prod([(time - other) / (one - other) for other in times if other != one])) for one in times]
-
-
 def _state(
     step: Increment, phase: str, time: float, found: Converged, values: dict[str, float], lost: float, planned: float
 ) -> State:
     """Return the new state, its energies integrated from the last by the trapezoidal rule.
 
-    A viscous slide goes at the new targets all the way: then what is driven works with its new value.
+    A snap, in a viscous slide or under shifted tangents, goes at the new targets all the way: then what is driven works
+    with its new value, and all of that which is not stored is lost.
     """
     last, trial = step.start, found.trial
+    snapped = lost > 0.0 or found.shifted
     model, old = last.model, last.energies
     names = list(model.surfaces)
     pressure = dict(zip(names, map(float, trial.pressure), strict=True))
     volume = dict(zip(names, map(float, found.volume), strict=True))
-    share = {n: 1.0 if lost and model.surfaces[n].cavity.supply.sets_pressure else 0.5 for n in names}
+    share = {n: 1.0 if snapped and model.surfaces[n].cavity.supply.sets_pressure else 0.5 for n in names}
     supply = sum(
         (share[n] * pressure[n] + (1.0 - share[n]) * last.pressure[n]) * (volume[n] - last.volume[n]) for n in names
     )
-    new = 1.0 if lost else 0.5
+    new = 1.0 if snapped else 0.5
     moved = (trial.displacement - last.displacement).ravel()
     load = sum(
         (new * values.get(name, 0.0) + (1.0 - new) * last.values.get(name, 0.0)) * float(pattern @ moved)
@@ -218,9 +199,12 @@ def _state(
     memory = model.body.remember(position, last.memory, step.seconds)
     lost += model.body.overstress_work((last.positions, position), (last.memory, memory))
     _, strain = model.body.energies(position, trial.modes)
+    touching = contact.energy(position, ways)
+    if snapped:
+        lost = max(lost, supply + load - (strain - old.strain) - (touching - old.contact) - rubbed)
     energies = Energies(
         strain, old.supply + supply, old.load + load, old.viscous + lost, motion, old.numerical + damped,
-        contact.energy(position, ways), old.friction + rubbed,
+        touching, old.friction + rubbed,
     )  # fmt: skip
     return State(
         model, last.index + 1, phase, time, trial.displacement, trial.modes, pressure, volume, values, reactions,

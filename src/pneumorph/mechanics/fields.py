@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumorph.mechanics.body import cell_volumes
+from pneumorph.mechanics.body import cell_volumes, quadrature_places
 from pneumorph.mechanics.state import State
 from pneumorph.mechanics.tables import cell_table, reference_nodes
 from pneumorph.mechanics.volumetric import local_pressure, split_bulk
@@ -56,7 +56,8 @@ def fields(state: State) -> list[BlockFields]:
         gradient = deformation_gradient(model.mesh, block, state.positions, table.shape, table.gradient)
         material = model.materials[block.domain]
         c = np.einsum("eqki,eqkj->eqij", gradient, gradient)
-        voigt, _ = material.stress_and_tangent(c[..., _VOIGT[0], _VOIGT[1]].reshape(-1, 6))
+        law = material.at(quadrature_places(model.mesh, block.nodes, table))
+        voigt, _ = law.stress_and_tangent(c[..., _VOIGT[0], _VOIGT[1]].reshape(-1, 6))
         second = np.empty_like(c)
         for column, (i, j) in enumerate(zip(*_VOIGT, strict=True)):
             second[..., i, j] = second[..., j, i] = voigt[:, column].reshape(c.shape[:2])

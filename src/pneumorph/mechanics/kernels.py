@@ -9,6 +9,11 @@ M = int L L', b = int L (J - 1), B = int cof(F) grad N L, and q kept as a state 
 Eliminating q exactly takes nearly twice the iterations (docs/decisions.md). U acts at every point and keeps the cell
 from turning inside out while its mean volume is held by q, see `volumetric`.
 
+Where a beam turns, the step of Newton's method stretches it to second order, and the stress of that is many times the
+true one. The tangent's geometric part therefore takes stresses that were carried along the step to first order,
+    S(u) + CC : sym(F' grad du),    U'(J) + U'' cof(F) : grad du,
+the residual those of the place (Magisano, Leonetti, Garcea, CMAME 313 (2017) 235: mixed integration points).
+
 Plane strain has F_33 = 1; axial symmetry F_33 = r / R and the volume factor 2 pi R.
 """
 
@@ -164,13 +169,14 @@ def add_matrices(sizes, cells, matrices, slots, indptr, data):  # type: ignore[n
 @njit(cache=True, nogil=True, fastmath=_FAST)
 def integrate(  # type: ignore[no-untyped-def]
     sizes, points, position, cells, shape, gradient, weight, mode, bulk, local, pressure, s, cc,
-    slots, indptr, residual, data, gain_constant, gain, tangent,
+    carried, slots, indptr, residual, data, gain_constant, gain, tangent,
 ):  # fmt: skip
     """Add the residual and, with `tangent`, the stiffness of all cells.
 
     s (cells, q, 6), cc (cells, q, 21): stress and tangent of the material; pressure (cells, k): q modes.
     residual (nodes * d,), data: values of the matrix whose block pattern `indptr` and `slots` describe.
     gain_constant (cells, k) and gain (cells, k, d, n): K M^-1 r_q and K M^-1 B', which update q.
+    carried (cells, q, 7): S and U' that the tangent takes for those of the place, see `advance`.
     """
     n, d, k = len(sizes[0]), len(sizes[1]), len(sizes[2])
     g, h = np.empty((d, n)), np.empty(n)
@@ -197,6 +203,7 @@ def integrate(  # type: ignore[no-untyped-def]
                 multiplier += mode[q, m] * pressure[e, m]
             total = multiplier + 0.5 * local * (det - 1.0 / det)
             second = 0.5 * local * (1.0 + 1.0 / (det * det))
+            held = multiplier + carried[e, q, 6]
             for i in range(3):
                 for j in range(3):
                     cof[i, j] = det * inverse[j, i]
@@ -240,12 +247,12 @@ def integrate(  # type: ignore[no-untyped-def]
                         half[v] = value
                     for r in range(3):
                         for l in range(3):
-                            value = (total + second * det) * det * inverse[j, i] * inverse[l, r]
-                            value -= total * det * inverse[l, i] * inverse[j, r]
+                            value = (held + second * det) * det * inverse[j, i] * inverse[l, r]
+                            value -= held * det * inverse[l, i] * inverse[j, r]
                             for m in range(3):
                                 value += f[r, m] * half[_VOIGT[m, l]]
                             if i == r:
-                                value += s[e, q, _VOIGT[j, l]]
+                                value += carried[e, q, _VOIGT[j, l]]
                             elasticity[i, j, r, l] = w * value
             for i in range(d):
                 for m in range(n):
@@ -297,6 +304,47 @@ def integrate(  # type: ignore[no-untyped-def]
                 for m in range(n):
                     gain[e, r, i, m] = bulk * right[r, i * n + m]
         _scatter(sizes, cell, matrix, slots[e], indptr, data)
+
+
+@njit(cache=True, nogil=True, fastmath=_FAST)
+def advance(sizes, points, position, step, cells, shape, gradient, local, cc, carried):  # type: ignore[no-untyped-def]
+    """Add to S and U' in `carried` (cells, q, 7) their change along a step (nodes, d), to first order in the step."""
+    n, d = len(sizes[0]), len(sizes[1])
+    g, h = np.empty((d, n)), np.empty(n)
+    a, inverse, f = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    df, strain = np.zeros((3, 3)), np.empty(6)
+    for e in range(len(cells)):
+        cell = cells[e]
+        for q in range(len(shape)):
+            _kinematics(sizes, cell, points, position, shape, gradient, q, g, h, a, inverse, f)
+            for i in range(d):
+                for j in range(d):
+                    value = 0.0
+                    for m in range(n):
+                        value += step[cell[m], i] * g[j, m]
+                    df[i, j] = value
+            if len(sizes[3]):
+                value = 0.0
+                for m in range(n):
+                    value += step[cell[m], 0] * h[m]
+                df[2, 2] = value
+            for i in range(3):
+                for j in range(i, 3):
+                    value = 0.0
+                    for m in range(3):
+                        value += f[m, i] * df[m, j] + f[m, j] * df[m, i]
+                    strain[_VOIGT[i, j]] = 0.5 * value if i == j else value  # shears count twice in CC : dE
+            for i in range(6):
+                value = 0.0
+                for j in range(6):
+                    value += cc[e, q, _PACKED[i, j]] * strain[j]
+                carried[e, q, i] += value
+            det = _invert(f, inverse)
+            value = 0.0
+            for i in range(3):
+                for j in range(3):
+                    value += inverse[j, i] * df[i, j]
+            carried[e, q, 6] += 0.5 * local * (det + 1.0 / det) * value
 
 
 @njit(cache=True, nogil=True)

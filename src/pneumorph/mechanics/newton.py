@@ -1,30 +1,30 @@
 """Newton's method for one increment: displacement, pressure modes and cavity pressures together.
 
 Full steps, limited by a cap on the displacement, by det F > 0 and by contact, are all that guards it: an energy line
-search is worse than cutting the increment, because the large bulk modulus makes the energy rise along good steps. Where
-no cut helps, `continuation` adds a viscous term; `dynamics` adds inertia. Both come here as the `Drag` of an
-`Increment`.
+search is worse than cutting the increment, because the large bulk modulus makes the energy rise along good steps. Two
+things help stiff and slender parts that turn: the tangent takes stresses that are carried along the steps to first
+order (see `kernels`), and tangents that stay unstable are shifted (see `shift`). Where no cut helps, `continuation`
+adds a viscous term; `dynamics` adds inertia. Both come here as the `Drag` of an `Increment`.
 """
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
 
-from pneumorph.errors import InputError
 from pneumorph.mechanics.body import Assembly
-from pneumorph.mechanics.contact.contacts import Rubbing
+from pneumorph.mechanics.increments import Converged, Drag, Increment, IncrementFailedError, Trial
 from pneumorph.mechanics.linear import LinearSolver, linear_solver
 from pneumorph.mechanics.model import Model
 from pneumorph.mechanics.pattern import Pattern
+from pneumorph.mechanics.settings import Settings
+from pneumorph.mechanics.shift import Shift
 from pneumorph.mechanics.state import State
-from pneumorph.mechanics.supplies import Gas
 from pneumorph.mechanics.supplies.network import Equations, Network, NetworkIncrement
 from pneumorph.mechanics.touching import Forces, Tangent, Touching
 
@@ -33,126 +33,6 @@ _SETTLED = 1e-4  # error at which friction takes up the present normal forces
 _RENEWED = 5e-3  # error that these may make
 _NEAR = 1e-2  # error below which the exact Hessian of the barrier leads on
 _log = logging.getLogger(__name__)
-
-
-# setting -> lowest value, highest, whether the lowest is allowed
-_ALLOWED = {
-    "tolerance": (0.0, 1e-2, False),
-    "iterations": (1, np.inf, True),
-    "contact_iterations": (1, np.inf, True),
-    "rounds": (0, np.inf, True),
-    "largest_step": (0.0, np.inf, False),
-    "growth": (1.0, np.inf, True),
-    "few": (0, np.inf, True),
-    "cut": (0.0, 1.0, False),
-    "viscosity": (0.0, np.inf, True),
-    "relaxations": (1, np.inf, True),
-    "flow_accuracy": (0.0, np.inf, False),
-}
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How a solve steps and when it is content.
-
-    tolerance:     residual force over the largest of applied forces and reactions.
-    iterations:    iterations before an increment is given up.
-    largest_step:  cap on a nodal displacement in one iteration, as a fraction of the body's size.
-    growth, few:   an increment that took at most `few` iterations is followed by one `growth` times larger.
-    cut:           factor on an increment that failed.
-    contact_iterations: iterations where there is contact.
-    rounds:        how often friction takes up the normal forces of the present place before those of the last stay.
-    viscosity:     first coefficient of the viscous regularisation that is tried where increments fail, in units of
-                   mu / size2 (see `continuation`); 0 switches it off for good.
-    relaxations:   viscous steps before an increment is given up.
-    flow_accuracy: error in a cavity's mass of gas that the time integration of flow may make in an increment, as a
-                   share of that mass.
-    """
-
-    tolerance: float = 1e-8
-    iterations: int = 12
-    contact_iterations: int = 60
-    rounds: int = 3
-    largest_step: float = 0.05
-    growth: float = 1.5
-    few: int = 7
-    cut: float = 0.4
-    viscosity: float = 100.0
-    relaxations: int = 60
-    flow_accuracy: float = 1e-4
-
-    def __post_init__(self) -> None:
-        for name, (least, most, included) in _ALLOWED.items():
-            value = getattr(self, name)
-            if not (least < value < most or (included and value == least)):  # nan is in no range
-                limits = f"{least:g} or more" if included else f"more than {least:g}"
-                limits += f", less than {most:g}" if most < np.inf else ""
-                raise InputError(f"solver: {name} = {value!r}, allowed: {limits}")
-
-
-@dataclass(eq=False)
-class Trial:
-    """The unknowns of an increment: displacement (nodes, d), pressure modes, cavity pressures (cavities,).
-
-    ways (contacts,): how far obstacles have moved, mm; they wait where nothing gives way.
-    """
-
-    displacement: Array
-    modes: list[Array]
-    pressure: Array
-    ways: Array = field(default_factory=lambda: np.zeros(0))
-
-    def stepped(self, factor: float, du: Array, dq: list[Array], dp: Array, dw: Array) -> Trial:
-        """Return the trial after a part of a step."""
-        modes = [q + factor * d for q, d in zip(self.modes, dq, strict=True)]
-        return Trial(self.displacement + factor * du, modes, self.pressure + factor * dp, self.ways + factor * dw)
-
-
-@dataclass(frozen=True, eq=False)
-class Converged:
-    """A trial in equilibrium, with what the iteration found on the way.
-
-    imbalance (unknowns,): internal minus applied forces, N, without those of a drag.
-    gas: in the cavities; flow_error: of the integration of its flow, over what the settings allow.
-    rubbing: the friction that it is in equilibrium with.
-    """
-
-    trial: Trial
-    volume: Array
-    imbalance: Array
-    iterations: int
-    unstable_modes: int | None
-    smallest_volume_ratio: float
-    gas: Gas
-    flow_error: float
-    rubbing: Rubbing | None
-
-
-class IncrementFailedError(Exception):
-    """An increment did not converge; the message says why."""
-
-
-class Drag(Protocol):
-    """A force on the body beside those of the model, linear in the displacement, with a symmetric matrix."""
-
-    def force(self, displacement: Array) -> Array:
-        """Return the force (unknowns,), N, with which it resists at a displacement (nodes, d)."""
-
-    def add_tangent(self, values: Array) -> None:
-        """Add its matrix to the values of the tangent, in the order of the body's pattern."""
-
-
-@dataclass(frozen=True, eq=False)
-class Increment:
-    """What an increment starts from, how long it takes and what it meets.
-
-    start: the state before; seconds: time that passes, 0 where the phase has no duration; share: of the phase.
-    """
-
-    start: State
-    seconds: float = 0.0
-    drag: Drag | None = None
-    share: float = 1.0
 
 
 class Newton:
@@ -171,6 +51,7 @@ class Newton:
         self._free[self._held] = False
         self._surfaces = list(model.surfaces.values())
         self._shear = max(material.shear_modulus for material in model.materials.values())
+        self._mass = np.repeat(model.unit_mass, body.dimension)
         self._network = Network(model.surfaces, model.tubes, model.atmosphere, self._shear)
 
     def solve(
@@ -191,12 +72,16 @@ class Newton:
         goal, rounds = self._contact.ways(values), 0
         rubbing = self._touching.rubbing(increment.start, passed)
         self._touching.make_room(increment.start)
-        unstable: int | None = 0
+        unstable: int | None = 0  # modes of the last tangent, and of the last without a shift
+        modes: int | None = 0
         first = best = before = np.inf
         settled, factor = False, 1.0
         factors: _Factors | None = None
         gain = 1e-2
-        for iteration in range(iterations):
+        shift, origin = self._shift(increment), trial
+        for iteration in range(iterations + settings.relaxations):
+            if iteration - shift.iterations >= iterations:
+                break
             assembly = self._assemble(trial, increment)
             position = self.model.mesh.points + trial.displacement
             gradients = [surface.gradient(position) for surface in self._surfaces]
@@ -225,25 +110,39 @@ class Newton:
                 error = self._error(residual, applied, equations, move)
             if not np.isfinite(error):
                 raise IncrementFailedError("the residual is not finite")
-            if (error <= tolerance or (settled and error <= 1e-3)) and iteration > 0:
+            converged = (error <= tolerance or (settled and error <= 1e-3)) and iteration > 0
+            if shift and shift.iterations < settings.relaxations:
+                converged = False  # only the tangent alone tells whether this is a stable state
+            if converged and unstable and not increment.start.unstable_modes and shift.again(iteration):
+                _log.debug("iteration %d: a saddle with unstable modes %s, started again", iteration, unstable)
+                trial, factors, before = origin, None, np.inf
+                continue
+            if converged:
                 ratio = self.model.body.smallest_volume_ratio(position, fine=True)
                 gas = supplies.gas(trial.pressure, volumes)
                 flow_error = supplies.error(trial.pressure, volumes) / settings.flow_accuracy
-                return Converged(trial, volumes, imbalance, iteration, unstable, ratio, gas, flow_error, rubbing)
+                return Converged(
+                    trial, volumes, imbalance, iteration, modes, ratio, gas, flow_error, rubbing, shift.used
+                )
             _log.debug("iteration %d: error %.3g, unstable modes %s", iteration, error, unstable)
             # the last factors go on serving while they converge fast: a factorisation costs ten substitutions
-            if unstable or factor < 1.0 or error > min(1e-2, gain * before):
+            if unstable or shift or factor < 1.0 or error > min(1e-2, gain * before):
                 factors = None
             first = error if iteration == 0 else first
-            if iteration >= 5 and error > first and not self._contact:  # a good increment has passed its worst by then
+            rough = self._contact or shift.used  # other good increments have passed their worst then
+            if iteration >= 8 and error > first and not rough:
                 raise IncrementFailedError(f"the residual is still larger than at first after {iteration} iterations")
             best, before = min(best, error), error
-            if error > 1e6 * max(best, settings.tolerance) and not self._contact:
+            if error > 1e6 * max(best, settings.tolerance) and not rough:
                 raise IncrementFailedError(f"the residual grew to {error:.2g} of the applied forces")
             if factors is None:
                 tangent = self._tangent(assembly, position, trial.pressure, increment.drag)
                 tangent, touch = self._touching.tangent(tangent, position, trial.ways, rubbing, error < _NEAR)
+                tangent[self._diagonal] += shift.relaxed(error)
                 factors, gain = self._factorise(tangent, gradients, equations.softness, move, touch), 1e-2
+                modes = modes if shift else factors.unstable_modes
+                while shift.wanted(factors.unstable_modes):
+                    factors = self._shifted(factors, tangent, shift.raised(), gradients, equations.softness)
                 unstable = factors.unstable_modes
             else:
                 gain = 1e-1
@@ -258,14 +157,22 @@ class Newton:
                 forces = Forces(residual, pushed, rubbing)
                 place = position, trial.ways
                 factor = self._touching.softened(place, (du, dw), forces, factors.touching, factor)
-            trial = trial.stepped(factor, du, dq, dp, dw)
+            carried = self.model.body.carry(assembly, position, factor * du)
+            trial = trial.stepped(factor, du, dq, dp, dw, carried)
             # under a very small load the residual stays at the rounding of the bulk term: then the step tells
             settled = (
                 factor == 1.0
+                and not shift
                 and largest <= 1e-10 * self.model.mesh.size
                 and float(np.abs(dp).max(initial=0.0)) <= 1e-10 * self._shear
             )
-        raise IncrementFailedError(f"no convergence in {iterations} iterations")
+        raise IncrementFailedError(f"no convergence in {iteration} iterations")
+
+    def _shift(self, increment: Increment) -> Shift:
+        """Return the shift of an increment: none where there is drag or contact, or where viscosity is switched off."""
+        allowed = increment.drag is None and not self._contact
+        unit = self._shear / self.model.mesh.size**2
+        return Shift(self._mass, self.settings.viscosity * unit if allowed else 0.0)
 
     def _adopt(self) -> None:
         """Use the present pattern; where it is a new one, the linear solver analyses again."""
@@ -291,7 +198,7 @@ class Newton:
         du, dw = trial.displacement - last.displacement, self._contact.ways(values) - ways
         share = self._contact.limit((last.positions, ways), (last.positions + du, ways + dw))
         if share == 1.0:
-            return Trial(trial.displacement, trial.modes, trial.pressure, ways + dw)
+            return Trial(trial.displacement, trial.modes, trial.pressure, ways + dw, trial.carried)
         modes = [old + share * (new - old) for old, new in zip(last.pressure_modes, trial.modes, strict=True)]
         before = np.array([last.pressure[name] for name in last.pressure])
         pressure = before + share * (trial.pressure - before)
@@ -299,7 +206,9 @@ class Newton:
 
     def _assemble(self, trial: Trial, increment: Increment) -> Assembly:
         position = self.model.mesh.points + trial.displacement
-        return self.model.body.assemble(position, trial.modes, memory=increment.start.memory, seconds=increment.seconds)
+        return self.model.body.assemble(
+            position, trial.modes, memory=increment.start.memory, seconds=increment.seconds, carried=trial.carried
+        )
 
     def _load(self, values: Mapping[str, float]) -> Array:
         total = np.zeros(self.model.body.unknowns)
@@ -338,17 +247,33 @@ class Newton:
     ) -> _Factors:
         """Factor the tangent with its supports, and solve for the cavities' unit pressures; overwrites `values`."""
         self._adopt()
-        diagonal = self._touching.wide.pattern.diagonal
         moved = np.zeros(self.model.body.unknowns)
         moved[self._held] = move
         pulled = _multiply(self._matrix(values), moved) if np.any(move) else moved
-        typical = float(np.abs(values[diagonal]).mean())
+        typical = float(np.abs(values[self._diagonal]).mean())
         values[self._struck] = 0.0
-        values[diagonal[self._held]] = typical
+        values[self._diagonal[self._held]] = typical
+        return self._factors(values, gradients, softness, pulled, touching)
+
+    def _shifted(
+        self, factors: _Factors, values: Array, more: Array, gradients: list[Array], softness: Array
+    ) -> _Factors:
+        """Factor the tangent with more (unknowns,) on its diagonal, in place, where nothing is held."""
+        values[self._diagonal[self._free]] += more[self._free]
+        return self._factors(values, gradients, softness, factors.pulled, factors.touching)
+
+    def _factors(
+        self, values: Array, gradients: list[Array], softness: Array, pulled: Array, touching: Tangent
+    ) -> _Factors:
         self.linear.factorise(self._matrix(values))
         slopes = self._slopes(gradients)
         response = self.linear.solve(slopes.T) if len(slopes) else slopes.T
         return _Factors(pulled, response, self._unstable(slopes @ response, softness), touching)
+
+    @property
+    def _diagonal(self) -> NDArray[np.int64]:
+        """Where the diagonal lies in the values of the tangent."""
+        return self._touching.wide.pattern.diagonal
 
     def _step(
         self, factors: _Factors, residual: Array, gradients: list[Array],

@@ -20,7 +20,7 @@ from pneumorph.mesh.topology import boundary
 Array = NDArray[np.float64]
 
 _SOLID = {"triangle6": "wedge18", "quad9": "hexahedron27"}
-_RINGS = 3  # of cells in a cap, around the middle
+_RINGS = 3  # of cells in a cap, around the middle, at most: it hardly deforms
 _MIDDLE = 0.25  # radius of the middle of a cap, of the inner radius of the tube
 
 
@@ -47,15 +47,23 @@ def mesh_skinned_tube(
     if half and lattice.mirror is None:
         raise MeshError("mesh: half = True: the map of cells is not its own mirror image, expected one that is")
     check_cells(lattice.around * lattice.length / size**2 * (wall_layers + skin_layers), f"skinned tube at {size:g} mm")
-    sheet = mesh_sheet(lattice, size, tube.cap, half=half)
+    rings = min(_RINGS, max(1, int((tube.radius - tube.wall) * (1.0 - _MIDDLE) / size)))
+    return roll(mesh_sheet(lattice, size, tube.cap, half=half), tube, wall_layers, skin_layers, half, rings=rings)
+
+
+def roll(
+    sheet: SheetMesh, tube: SkinnedTube, wall_layers: int, skin_layers: int, half: bool, *, rings: int = _RINGS
+) -> Mesh:
+    """Return the mesh of a tube whose wall, skin and caps are built on the cells of a flat sheet."""
     inner = tube.radius - tube.wall
-    rings = [-inner * (1.0 - _MIDDLE) * (1.0 - i / _RINGS) for i in range(_RINGS)]
+    below = [-inner * (1.0 - _MIDDLE) * (1.0 - i / rings) for i in range(rings)]
     steps = [tube.wall * i / wall_layers for i in range(wall_layers)]
     steps += [tube.wall + tube.depth * i / skin_layers for i in range(skin_layers + 1)]
-    corners = np.array(rings + steps)
+    corners = np.array(below + steps)
     heights = np.sort(np.concatenate([corners, (corners[1:] + corners[:-1]) / 2.0]))
     points = np.concatenate([_rolled(sheet, tube, height) for height in heights])
-    points, stack = _with_plugs(points, _stacked(sheet, wall_layers, skin_layers), sheet, lattice.length, tube.cap)
+    stack = _stacked(sheet, wall_layers, skin_layers, rings)
+    points, stack = _with_plugs(points, stack, sheet, tube.lattice.length, tube.cap)
     points, blocks = _used(points, stack)
     faces = _faces(points, blocks, tube, half)
     return Mesh(points, blocks, MappingProxyType(faces), bending_walls={"wall": tube.wall})
@@ -90,10 +98,10 @@ def _shifted(sheet: SheetMesh, tube: SkinnedTube, share: float) -> Array:
     return y
 
 
-def _stacked(sheet: SheetMesh, wall_layers: int, skin_layers: int) -> list[CellBlock]:
+def _stacked(sheet: SheetMesh, wall_layers: int, skin_layers: int, rings: int) -> list[CellBlock]:
     count = len(sheet.points)
     result: list[CellBlock] = []
-    first = 2 * _RINGS
+    first = 2 * rings
     for kind, nodes in sheet.cells.items():
         in_cap = sheet.below[kind] | sheet.above[kind]
         parts = {
