@@ -66,7 +66,8 @@ def test_linear_elastic_has_the_moduli_of_young_and_poisson():
 def test_every_public_law_has_a_name():
     public = [getattr(materials, name) for name in materials.__all__]
     laws = {item for item in public if isinstance(item, type) and issubclass(item, materials.Material)}
-    assert {law for law in laws if not isabstract(law)} == set(LAWS.values())
+    fitted = {materials.OrthotropicLayer}  # to the cells of a skin, never written in a study
+    assert {law for law in laws if not isabstract(law)} - fitted == set(LAWS.values())
 
 
 def test_a_law_that_locks_has_no_state_beyond():

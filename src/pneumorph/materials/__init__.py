@@ -11,7 +11,9 @@ from pneumorph.materials.material import Material
 from pneumorph.materials.mooney_rivlin import MooneyRivlin
 from pneumorph.materials.neo_hookean import NeoHookean
 from pneumorph.materials.ogden import Ogden
+from pneumorph.materials.orthotropic import OrthotropicLayer
 from pneumorph.materials.prony import Prony, ViscousStep
+from pneumorph.materials.ridges import Ridges
 from pneumorph.materials.stability import USUAL_RANGE, Instability, instabilities, stability_limit
 from pneumorph.materials.stretch import StretchEnergy, StretchMaterial
 from pneumorph.materials.yeoh import Yeoh
@@ -29,7 +31,9 @@ __all__ = [
     "MooneyRivlin",
     "NeoHookean",
     "Ogden",
+    "OrthotropicLayer",
     "Prony",
+    "Ridges",
     "StretchEnergy",
     "StretchMaterial",
     "ViscousStep",

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +25,16 @@ Array = NDArray[np.float64]
 
 # bulk modulus over initial shear modulus where a source says "incompressible"
 INCOMPRESSIBLE_RATIO = 1000.0
+
+
+class PointLaw(Protocol):
+    """A law at given points: what the solver evaluates. Every material without directions is one."""
+
+    def energy(self, c: Array) -> Array:
+        """Return the energy density (n,), see `Material.energy`."""
+
+    def stress_and_tangent(self, c: Array, out: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
+        """Return S (n, 6) and CC (n, 21), see `Material.stress_and_tangent`."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +103,10 @@ class Material(ABC):
         """Initial Poisson's ratio."""
         bulk, shear = self.bulk_modulus, self.shear_modulus
         return (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
+
+    def at(self, place: Array) -> PointLaw:
+        """Return the law at reference positions (n, 3), mm: another one for a material with directions of its own."""
+        return self
 
     @abstractmethod
     def energy(self, c: Array) -> Array:

@@ -42,11 +42,12 @@ class SheetMesh:
     high: Array
 
 
-def mesh_sheet(lattice: Lattice, size: float, strip: float, *, half: bool = False) -> SheetMesh:
+def mesh_sheet(lattice: Lattice, size: float, strip: float | None, *, half: bool = False) -> SheetMesh:
     """Return the planar mesh of a lattice, holes included (cells that are not `beam`).
 
     size: largest edge, mm, along and around. strip: wanted height of the strips at both ends, mm; they end at the lines
-    of the mesh that are nearest. half: from one line of symmetry to the other (`Lattice.mirror` must exist).
+    of the mesh that are nearest; None: no strips, so that all rows are meshed alike. half: from one line of symmetry to
+    the other (`Lattice.mirror` must exist).
     """
     start = 0.0 if lattice.mirror is None else lattice.mirror
     extent = lattice.around / (2.0 if half else 1.0)
@@ -54,8 +55,11 @@ def mesh_sheet(lattice: Lattice, size: float, strip: float, *, half: bool = Fals
     x[lattice.around - x < _SAME * lattice.around] = 0.0
     x = np.unique(x)
     x = np.append(x[x < extent * (1.0 - _SAME)], extent)
-    bands, y = _levels(lattice, x + start, size)
-    low, high = _nearest(y, strip, lattice.length / 2.0), _nearest(y, lattice.length - strip, lattice.length / 2.0)
+    bands, y = _levels(lattice, x + start, size, 1 if strip is None else 2)
+    low, high = 0, len(bands)
+    if strip is not None:
+        middle = lattice.length / 2.0
+        low, high = _nearest(y, strip, middle), _nearest(y, lattice.length - strip, middle)
     empty = np.array([_in_holes(lattice, row, (x[:-1] + x[1:]) / 2.0 + start) for row in range(lattice.rows)])
     polygons: list[Array] = []
     marks: list[tuple[bool, bool, bool]] = []
@@ -83,15 +87,42 @@ def mesh_sheet(lattice: Lattice, size: float, strip: float, *, half: bool = Fals
     )
 
 
-def _levels(lattice: Lattice, x: Array, size: float) -> tuple[list[int], Array]:
-    """Return for each band between two levels the row of holes in it, or -1; and the levels (bands + 1, n)."""
+def plain_sheet(x: Array, y: Array, *, closed: bool) -> SheetMesh:
+    """Return a sheet without holes, cut by lines at x (from 0) and y (from 0), mm; all cells are `beam`.
+
+    The first and the last row are the strips at the ends. closed: the last x is where the sheet meets x = 0 again.
+    """
+    polygons: list[Array] = []
+    bands: list[int] = []
+    for (left, right), (band, (low, high)) in itertools.product(
+        itertools.pairwise(x), enumerate(itertools.pairwise(y))
+    ):
+        corners = np.array([(left, low), (right, low), (right, high), (left, high)])
+        pieces = _pieces(corners, split=band in (0, len(y) - 2))
+        polygons += pieces
+        bands += [band] * len(pieces)
+    points, cells, order = _numbered(polygons, float(x[-1]) if closed else None)
+    band_of = {kind: np.array(bands)[order[kind]] for kind in cells}
+    beam, below, above = (
+        {kind: test(found) for kind, found in band_of.items()}
+        for test in (lambda found: found >= 0, lambda found: found == 0, lambda found: found == len(y) - 2)
+    )
+    ends = np.full(len(points), y[1]), np.full(len(points), y[-2])
+    return SheetMesh(points, cells, beam, below, above, *ends)
+
+
+def _levels(lattice: Lattice, x: Array, size: float, ends: int) -> tuple[list[int], Array]:
+    """Return for each band between two levels the row of holes in it, or -1; and the levels (bands + 1, n).
+
+    ends: least number of bands in the first and the last row of holes.
+    """
     edges = lattice.levels(x % lattice.around)
     edges = np.vstack([np.zeros(len(x)), edges, np.full(len(x), lattice.length)])
     bands: list[int] = []
     levels = [edges[0]]
     for number, (low, high) in enumerate(itertools.pairwise(edges)):
         # the strips at the ends need a line that meets neither end: the middle of a row of holes at the latest
-        least = 2 if number in (1, len(edges) - 3) else 1
+        least = ends if number in (1, len(edges) - 3) else 1
         parts = max(least, math.ceil(float((high - low).max()) / size - _SAME))
         bands += [number // 2 if number % 2 else -1] * parts
         levels += [low + (high - low) * (i + 1) / parts for i in range(parts)]
