@@ -1,6 +1,7 @@
 """Input files as text: what is refused, names, and the dialect of Abaqus (which is not here to run)."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,19 @@ from pneumorph.exchange import PressureTable, write_inp
 from pneumorph.exchange import inp_mesh as inp_meshes
 from pneumorph.exchange.inp_mesh import ELEMENTS, InpMesh
 from pneumorph.materials import ExtendedTube, Gent, LinearElastic, NeoHookean, Ogden, Prony, Yeoh
-from pneumorph.mechanics import Cavity, Clamp, Gravity, Model, Phase, Programme, Roller, Traction, VolumeSupply
+from pneumorph.mechanics import (
+    Cavity,
+    Clamp,
+    Contact,
+    Gravity,
+    HalfSpace,
+    Model,
+    Phase,
+    Programme,
+    Roller,
+    Traction,
+    VolumeSupply,
+)
 from pneumorph.mesh import CellBlock, FaceBlock, Mesh, box, rectangle
 from pneumorph.mesh.inp import read_deck, sides
 from pneumorph.mesh.mesh import CELL_NODES
@@ -138,6 +151,13 @@ def test_a_prony_series_is_said_to_be_left_out_and_refused_where_it_would_matter
     assert any("Prony series is left out" in line for line in written(tmp_path, model))
     with pytest.raises(InputError, match="phase 'pull' has a duration and the material of 'body' a Prony series"):
         written(tmp_path, model, Programme((Phase("pull", {"pull": 0.01}, duration=1.0),)))
+
+
+def test_contact_is_refused(tmp_path):
+    contact = Contact("floor", ("z0",), HalfSpace((0.0, 0.0, -1.0), (0.0, 0.0, 1.0)))
+    model = replace(pulled(), contacts=(contact,))
+    with pytest.raises(InputError, match=r"contact \(floor\) cannot be written to an .inp file"):
+        written(tmp_path, model)
 
 
 def test_phases_with_inertia_are_refused(tmp_path):

@@ -1,19 +1,21 @@
 """STL and STEP of deformed bodies: they close, and hold the volume of the body."""
 
 import re
+from dataclasses import replace
 
+import meshio
 import numpy as np
 import pytest
 from netgen.occ import OCCGeometry
 
 from pneumorph.errors import InputError, MeshError, StorageError
 from pneumorph.exchange import surface as surfaces
-from pneumorph.exchange import surface_of, write_step, write_stl
+from pneumorph.exchange import surface_of, write_bodies, write_step, write_stl
 from pneumorph.exchange.step import step_text
 from pneumorph.exchange.surface import Surface
 from pneumorph.geometry import ThickSphere
 from pneumorph.materials import NeoHookean
-from pneumorph.mechanics import Cavity, Clamp, Model, Symmetry
+from pneumorph.mechanics import Block, Cavity, Clamp, Contact, HalfSpace, Model, Motion, Symmetry
 from pneumorph.mechanics.body import cell_volumes
 from pneumorph.mechanics.fields import deformation_gradient
 from pneumorph.mechanics.state import rest
@@ -166,3 +168,16 @@ def test_a_place_that_cannot_be_written_is_refused(tmp_path):
         write_stl(tmp_path / "nowhere" / "block.stl", block())
     with pytest.raises(StorageError, match=r"cannot write \(is a folder\)"):
         write_stl(tmp_path, block())
+
+
+def test_rigid_bodies_are_written_where_a_state_has_them(tmp_path):
+    stamp = Block((0.0, 0.0, 1.1), (1.0, 1.0, 2.0), motion=Motion("stamp", (0.0, 0.0, -1.0)))
+    floor = HalfSpace((0.0, 0.0, -0.5), (0.0, 0.0, 1.0))
+    contacts = Contact("top", ("z1",), stamp, body="stamp"), Contact("foot", ("z0",), floor, reach=0.01)
+    model = Model(box(1, 1, 1), {"body": NeoHookean(0.1)}, (Clamp("z0"),), contacts=contacts)
+    written = write_bodies(tmp_path / "bodies.stl", model, replace(rest(model), values={"stamp": 0.5}))
+    assert written.counts == {"bodies": 2, "triangles": 14}
+    points = meshio.read(tmp_path / "bodies.stl").points
+    assert np.unique(points[:, 2].round(6)) == pytest.approx([-0.5, 0.6, 1.5])
+    with pytest.raises(InputError, match="no rigid bodies: the model is 3d, with 0 of them"):
+        write_bodies(tmp_path / "none.stl", replace(model, contacts=()))

@@ -15,9 +15,11 @@ from pneumorph.measures import (
     CurvatureResidual,
     Diameter,
     EnergyImbalance,
+    LineLength,
     ReactionForce,
     ReactionMoment,
     TipRotation,
+    TurnRate,
     centre_line,
     energy_check,
     fit_circle,
@@ -220,3 +222,39 @@ def test_a_closed_face_has_no_tip_rotation():
     )
     with pytest.raises(InputError, match="closed"):
         TipRotation(tip="all")(rest(model))
+
+
+@pytest.mark.parametrize("angle", [1e-6, 0.7, 3.5])
+def test_uniform_bending_turns_every_section_alike_and_keeps_the_length_of_the_line(beam, angle):
+    state = bent(beam, angle)
+    # slices of tetrahedra are not quite alike: their best rotations are off by a thousandth of the turn of a slice
+    assert TurnRate(**ENDS, axis=Y)(state) == pytest.approx(angle / LENGTH, rel=1e-3)
+    assert TurnRate(**ENDS, axis=(0.0, -1.0, 0.0))(state) == pytest.approx(-angle / LENGTH, rel=1e-3)
+    # chords between sections: an angle a between two is short by a² / 24; section points lie inwards by as much
+    assert LineLength(**ENDS)(state) == pytest.approx(LENGTH, rel=2.0 * (angle / 20) ** 2 / 24 + 1e-3)
+
+
+def test_only_the_middle_half_counts_for_the_turn_rate(beam):
+    """Straight up to a quarter and from three quarters on, bent between: all of the angle over half the length."""
+    angle, quarter = 0.5, LENGTH / 4
+    x, y, z = beam.mesh.points.T
+    radius = 2 * quarter / angle
+    turn = np.clip(z - quarter, 0.0, 2 * quarter) / radius
+    before, after = np.minimum(z, quarter), np.maximum(z - 3 * quarter, 0.0)
+    place = np.column_stack(
+        [
+            2 * radius * np.sin(turn / 2) ** 2 + x * np.cos(turn) + after * np.sin(turn),
+            y,
+            before + (radius - x) * np.sin(turn) + after * np.cos(turn),
+        ]
+    )
+    state = replace(rest(beam), displacement=place - beam.mesh.points)
+    assert TurnRate(**ENDS, axis=Y)(state) == pytest.approx(angle / (2 * quarter), rel=0.02)
+
+
+def test_a_stretched_body_has_a_longer_line_and_no_turn(beam):
+    state = replace(rest(beam), displacement=beam.mesh.points * [-0.1, -0.1, 0.3])
+    assert LineLength(**ENDS)(state) == pytest.approx(1.3 * LENGTH, rel=1e-3)
+    assert abs(TurnRate(**ENDS, axis=Y)(state)) < 1e-4
+    with pytest.raises(InputError, match="sections in the middle half, expected 3 or more"):
+        TurnRate(**ENDS, sections=4)(state)

@@ -37,8 +37,8 @@ class InpSteps:
     fields: write displacement and stress of all nodes; printed: faces whose displacements go to the .dat file.
 
     Raises InputError for a cavity that is not driven by a pressure and has no table, or is closed by a cap, for a face
-    in two cavities, and a programme that does not fit the model or is not static; NameNotFoundError for a table or face
-    that is not in the model.
+    in two cavities, contact, and a programme that does not fit the model or is not static; NameNotFoundError for a
+    table or face that is not in the model.
     """
 
     inp: InpMesh
@@ -51,6 +51,9 @@ class InpSteps:
 
     def __post_init__(self) -> None:
         self.programme.check(self.model)
+        if self.model.contacts:
+            names = ", ".join(contact.name for contact in self.model.contacts)
+            raise InputError(f"contact ({names}) cannot be written to an .inp file; leave it out of the study")
         for name in self.tables:
             if name not in self.model.surfaces:
                 raise NameNotFoundError(unknown_name("cavity", name, self.model.surfaces))

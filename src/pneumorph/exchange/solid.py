@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
+from pneumorph.errors import InputError
 from pneumorph.exchange.step import step_text
 from pneumorph.exchange.surface import WHOLE, surface_of
 from pneumorph.exchange.written import Written, put
 from pneumorph.geometry.stl import stl_bytes
 from pneumorph.mechanics import Model, State
+from pneumorph.mechanics.contact.outlines import outline, rigid_bodies, way_of
 from pneumorph.solution.versions import versions
 
 
@@ -22,6 +26,27 @@ def write_stl(
     surface = surface_of(model, None if state is None else state.positions, part)
     put(path, lambda file: file.write_bytes(stl_bytes(surface.points, surface.triangles, title or part)))
     return Written(Path(path), {"triangles": len(surface.triangles)})
+
+
+def write_bodies(path: str | Path, model: Model, state: State | None = None, *, title: str = "") -> Written:
+    """Write the rigid bodies that a body may touch, where a state has them (None: at rest), as one STL file in mm.
+
+    Planes and pipes go a tenth of the body's size beyond the body. Raises InputError for a model without rigid bodies,
+    or that is not in space.
+    """
+    mesh = model.mesh
+    bodies = rigid_bodies(model.contacts)
+    if not bodies or mesh.dimension != 3:
+        raise InputError(f"no rigid bodies: the model is {mesh.space}, with {len(bodies)} of them; expected some in 3d")
+    place = np.concatenate([mesh.points, mesh.points if state is None else state.positions])
+    low, high = place.min(axis=0) - 0.1 * mesh.size, place.max(axis=0) + 0.1 * mesh.size
+    values = {} if state is None else state.values
+    parts = [outline(body, low, high, way_of(body, values)) for body in bodies.values()]
+    first = np.cumsum([0, *(len(points) for points, _ in parts)])
+    points = np.concatenate([points for points, _ in parts])
+    triangles = np.concatenate([facets + start for (_, facets), start in zip(parts, first, strict=False)])
+    put(path, lambda file: file.write_bytes(stl_bytes(points, triangles, title or "rigid bodies")))
+    return Written(Path(path), {"bodies": len(bodies), "triangles": len(triangles)})
 
 
 def write_step(

@@ -72,6 +72,20 @@ class HeightField:
         columns, rows = (_around(*ends) for ends in ((self.x, x), (self.y, y)))
         return float(self.heights[rows, columns].max())
 
+    def at(self, x: float, y: float) -> float:
+        """Return the height, mm, at a place, bilinear between the grid's; beyond the edges that of the edge."""
+        column, u = _cell(self.x, x)
+        row, v = _cell(self.y, y)
+        corners = self.heights[row : row + 2, column : column + 2]
+        return float(np.array([1.0 - v, v]) @ corners @ np.array([1.0 - u, u]))
+
+
+def _cell(places: Array, place: float) -> tuple[int, float]:
+    """Return the number of the cell that holds a place, and how far into it the place lies, 0 to 1."""
+    share = np.clip((place - places[0]) / (places[-1] - places[0]), 0.0, 1.0) * (len(places) - 1)
+    number = min(int(share), len(places) - 2)
+    return number, float(share - number)
+
 
 def _around(places: Array, ends: tuple[float, float]) -> slice:
     first = int(np.searchsorted(places, ends[0], side="right")) - 1

@@ -11,16 +11,15 @@ import numpy as np
 from pneumorph.errors import InputError
 from pneumorph.terrain.height_field import HeightField
 from pneumorph.terrain.rover import GRAVITY, Drive, Rover
+from pneumorph.terrain.si import KILOGRAM, METRE, NEWTON_METRE, text
+from pneumorph.terrain.soft_wheel import HUB, SOFT, SoftWheel, add_soft_wheel
+from pneumorph.terrain.wheels import Wheel
 from pneumorph.units import show
 
 BODY, CENTRE = "rover", "centre"
 GROUND = "ground"
 GAP = 5.0  # mm between the highest ground under the robot and its lowest point before it drops
-_METRE = 1e-3
-_KILOGRAM = 1e3
 _BASE = 1.0  # m of solid ground below the lowest place
-# friction, hinge and driver as numbers in SI: N mm -> N m
-_NEWTON_METRE = 1e-3
 
 
 def ground_bytes(field: HeightField) -> bytes:
@@ -67,7 +66,7 @@ def mjcf(
     root = xml.Element("mujoco", model=f"{rover.wheel.name} on {PurePath(ground_file).stem}")
     xml.SubElement(root, "compiler", angle="radian", autolimits="true")
     xml.SubElement(
-        root, "option", timestep=_text(drive.step), gravity=_text(0.0, 0.0, -GRAVITY * _METRE),
+        root, "option", timestep=text(drive.step), gravity=text(0.0, 0.0, -GRAVITY * METRE),
         integrator="implicitfast", cone="pyramidal", solver="Newton",
     )  # fmt: skip
     visual = xml.SubElement(root, "visual")
@@ -75,21 +74,21 @@ def mjcf(
     xml.SubElement(visual, "headlight", ambient="0.35 0.35 0.35", diffuse="0.4 0.4 0.4", specular="0 0 0")
     xml.SubElement(visual, "map", znear="0.005", zfar="60", shadowclip="2.5")
     xml.SubElement(visual, "quality", shadowsize="2048", offsamples="4")
-    xml.SubElement(root, "statistic", extent="1.2", center=_text(place[0] * _METRE, place[1] * _METRE, 0.0))
+    xml.SubElement(root, "statistic", extent="1.2", center=text(place[0] * METRE, place[1] * METRE, 0.0))
     _defaults(root, drive)
     _assets(root, field, ground_file)
     world = xml.SubElement(root, "worldbody")
     low = float(field.heights.min())
     xml.SubElement(
-        world, "geom", {"class": GROUND}, name=GROUND, type="hfield", hfield=GROUND, pos=_text(0, 0, low * _METRE)
+        world, "geom", {"class": GROUND}, name=GROUND, type="hfield", hfield=GROUND, pos=text(0, 0, low * METRE)
     )
-    _robot(world, rover, (*place, start_height(rover, field, place)))
+    _robot(world, rover, drive, (*place, start_height(rover, field, place)))
     actuators, sensors = xml.SubElement(root, "actuator"), xml.SubElement(root, "sensor")
     for name, _, _ in rover.corners:
         xml.SubElement(
             actuators, "general", name=name, joint=name, dyntype="integrator", gaintype="fixed", biastype="affine",
-            gainprm=_text(drive.stiffness * _NEWTON_METRE), biasprm=_text(0.0, -drive.stiffness * _NEWTON_METRE, 0.0),
-            ctrlrange=_text(0.0, drive.speed),
+            gainprm=text(drive.stiffness * NEWTON_METRE), biasprm=text(0.0, -drive.stiffness * NEWTON_METRE, 0.0),
+            ctrlrange=text(0.0, drive.speed),
         )  # fmt: skip
     xml.SubElement(sensors, "framepos", name=CENTRE, objtype="site", objname=CENTRE)
     xml.indent(root)
@@ -97,13 +96,13 @@ def mjcf(
 
 
 def _defaults(root: xml.Element, drive: Drive) -> None:
-    contact = {"friction": _text(*drive.friction), "condim": str(drive.contact_dimension)}
+    contact = {"friction": text(*drive.friction), "condim": str(drive.contact_dimension)}
     outer = xml.SubElement(root, "default")
     ground = xml.SubElement(outer, "default", {"class": GROUND})
     xml.SubElement(ground, "geom", contact, contype="1", conaffinity="0", material=GROUND)
     robot = xml.SubElement(outer, "default", {"class": BODY})
     xml.SubElement(robot, "geom", contact, contype="0", conaffinity="1")
-    xml.SubElement(robot, "joint", damping=_text(drive.damping * _NEWTON_METRE), axis="0 1 0")
+    xml.SubElement(robot, "joint", axis="0 1 0")
 
 
 def _assets(root: xml.Element, field: HeightField, ground_file: str) -> None:
@@ -112,7 +111,7 @@ def _assets(root: xml.Element, field: HeightField, ground_file: str) -> None:
     size = (0.5 * field.length, 0.5 * field.width, field.relief or 1.0)
     xml.SubElement(
         assets, "hfield", name=GROUND, file=ground_file, content_type="image/vnd.mujoco.hfield",
-        size=_text(*(value * _METRE for value in size), _BASE),
+        size=text(*(value * METRE for value in size), _BASE),
     )  # fmt: skip
     xml.SubElement(
         assets, "texture", name="sky", type="skybox", builtin="gradient", rgb1="0.72 0.82 0.91", rgb2="0.97 0.98 0.99",
@@ -122,12 +121,12 @@ def _assets(root: xml.Element, field: HeightField, ground_file: str) -> None:
         assets, "texture", name=GROUND, type="2d", builtin="checker", rgb1="0.78 0.75 0.68", rgb2="0.70 0.67 0.60",
         width="256", height="256",
     )  # fmt: skip
-    tiles = (field.length * _METRE, field.width * _METRE)  # one pattern of two by two squares a metre
-    xml.SubElement(assets, "material", name=GROUND, texture=GROUND, texrepeat=_text(*tiles), specular="0.1")
+    tiles = (field.length * METRE, field.width * METRE)  # one pattern of two by two squares a metre
+    xml.SubElement(assets, "material", name=GROUND, texture=GROUND, texrepeat=text(*tiles), specular="0.1")
 
 
-def _robot(world: xml.Element, rover: Rover, place: tuple[float, float, float]) -> None:
-    body = xml.SubElement(world, "body", name=BODY, childclass=BODY, pos=_text(*(v * _METRE for v in place)))
+def _robot(world: xml.Element, rover: Rover, drive: Drive, place: tuple[float, float, float]) -> None:
+    body = xml.SubElement(world, "body", name=BODY, childclass=BODY, pos=text(*(v * METRE for v in place)))
     xml.SubElement(body, "freejoint", name=BODY)
     # the light goes with the robot but does not turn with it: shadows are drawn near the light only
     xml.SubElement(
@@ -137,33 +136,32 @@ def _robot(world: xml.Element, rover: Rover, place: tuple[float, float, float]) 
     xml.SubElement(body, "site", name=CENTRE, size="0.005")
     half = (0.5 * rover.length, 0.5 * rover.width, 0.5 * rover.height)
     xml.SubElement(
-        body, "geom", name="box", type="box", size=_text(*(v * _METRE for v in half)), rgba="0.20 0.33 0.49 1",
-        mass=_text((rover.mass - 4.0 * rover.wheel_mass) * _KILOGRAM),
+        body, "geom", name="box", type="box", size=text(*(v * METRE for v in half)), rgba="0.20 0.33 0.49 1",
+        mass=text((rover.mass - 4.0 * rover.wheel_mass) * KILOGRAM),
     )  # fmt: skip
     for name, x, y in rover.corners:
-        wheel = xml.SubElement(body, "body", name=name, pos=_text(x * _METRE, y * _METRE, 0.0))
-        xml.SubElement(wheel, "joint", name=name, type="hinge")
-        _wheel(wheel, rover)
+        wheel = xml.SubElement(body, "body", name=name, pos=text(x * METRE, y * METRE, 0.0))
+        xml.SubElement(wheel, "joint", name=name, type="hinge", damping=text(drive.damping * NEWTON_METRE))
+        if isinstance(rover.wheel, SoftWheel):
+            add_soft_wheel(wheel, rover.wheel, rover.wheel_mass, name)
+        else:
+            _wheel(wheel, rover.wheel, rover.wheel_mass)
 
 
-def _wheel(body: xml.Element, rover: Rover) -> None:
-    """Add the solids of a wheel; each has its share of the wheel's mass by its volume."""
-    wheel, lying = rover.wheel, _text(0.5**0.5, 0.5**0.5, 0.0, 0.0)  # a cylinder's axis from z to y
+def _wheel(body: xml.Element, wheel: Wheel, mass: float) -> None:
+    """Add the solids of a rigid wheel; each has its share of the wheel's mass by its volume."""
+    lying = text(0.5**0.5, 0.5**0.5, 0.0, 0.0)  # a cylinder's axis from z to y
     radius = wheel.hub_radius if wheel.paddles else wheel.radius
     volumes = [pi * radius**2 * wheel.width, *(b.thickness * b.width * b.length for b in wheel.boxes)]
-    masses = [rover.wheel_mass * _KILOGRAM * volume / sum(volumes) for volume in volumes]
+    masses = [mass * KILOGRAM * volume / sum(volumes) for volume in volumes]
     xml.SubElement(
-        body, "geom", type="cylinder", size=_text(radius * _METRE, 0.5 * wheel.width * _METRE), quat=lying,
-        mass=_text(masses[0]), rgba="0.25 0.25 0.25 1" if wheel.paddles else "0.84 0.37 0.0 1",
+        body, "geom", type="cylinder", size=text(radius * METRE, 0.5 * wheel.width * METRE), quat=lying,
+        mass=text(masses[0]), rgba=HUB if wheel.paddles else SOFT,
     )  # fmt: skip
     for box, mass in zip(wheel.boxes, masses[1:], strict=True):
         xml.SubElement(
-            body, "geom", type="box", mass=_text(mass), rgba="0.84 0.37 0.0 1",
-            size=_text(*(0.5 * v * _METRE for v in (box.thickness, box.width, box.length))),
-            pos=_text(box.x * _METRE, 0.0, box.z * _METRE),
-            quat=_text(cos(0.5 * box.angle), 0.0, sin(0.5 * box.angle), 0.0),
+            body, "geom", type="box", mass=text(mass), rgba=SOFT,
+            size=text(*(0.5 * v * METRE for v in (box.thickness, box.width, box.length))),
+            pos=text(box.x * METRE, 0.0, box.z * METRE),
+            quat=text(cos(0.5 * box.angle), 0.0, sin(0.5 * box.angle), 0.0),
         )  # fmt: skip
-
-
-def _text(*values: float) -> str:
-    return " ".join(f"{value:.9g}" for value in values)

@@ -5,7 +5,7 @@ MuJoCo works in m, kg, s; what is returned is in mm, s, rad.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -62,6 +62,7 @@ def engine() -> Any:
         import mujoco
     except ImportError as error:
         raise EngineError(f"MuJoCo is missing ({error}): pip install 'pneumorph[{EXTRA}]'") from error
+    mujoco.set_mju_user_warning(_ignore)  # else MuJoCo writes MUJOCO_LOG.TXT; `check_state` reads its counters
     return mujoco
 
 
@@ -88,11 +89,10 @@ def simulate(model: Any, drive: Drive) -> Travel:
     mujoco = engine()
     if abs(model.opt.timestep - drive.step) > 1e-12:
         raise InputError(f"drive: step = {drive.step:g} s, but the model was built for {model.opt.timestep:g} s")
-    mujoco.set_mju_user_warning(_ignore)  # else MuJoCo writes MUJOCO_LOG.TXT; the counters are read below
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    hinges = [model.jnt_qposadr[j] for j in range(model.njnt) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE]
-    speeds = [model.jnt_dofadr[j] for j in range(model.njnt) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE]
+    driven = model.actuator_trnid[:, 0]  # not the hinges inside soft wheels
+    hinges, speeds = model.jnt_qposadr[driven], model.jnt_dofadr[driven]
     body = model.body(BODY).id
     size = model.hfield_size[model.geom(GROUND).dataid[0]]
     block, moments = round(drive.record / drive.step), round(drive.duration / drive.record)
@@ -110,7 +110,9 @@ def simulate(model: Any, drive: Drive) -> Travel:
                 mujoco.mj_step(model, data, block)
         time = moment * drive.record
         centre = data.sensor(CENTRE).data
-        _check(mujoco, data, time, centre, size)
+        check_state(data, time)
+        if abs(centre[0]) > size[0] or abs(centre[1]) > size[1]:
+            raise EngineError(f"left the terrain before {time:g} s")
         if data.ncon:
             deepest = max(deepest, -float(data.contact.dist.min()))
         rows.append(
@@ -124,19 +126,19 @@ def _ignore(message: str) -> None:
     """Take a warning of MuJoCo; what matters is counted in its data."""
 
 
-def _check(mujoco: Any, data: Any, time: float, centre: Array, size: Array) -> None:
-    """Raise EngineError where the state is not to be trusted."""
-    kinds = mujoco.mjtWarning
+def check_state(data: Any, time: float) -> None:
+    """Raise EngineError where the state of a robot at a time (s) is not to be trusted."""
+    kinds = engine().mjtWarning
     for kind in (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC, kinds.mjWARN_BADCTRL):
         if data.warning[int(kind)].number:
             raise EngineError(f"unstable before {time:g} s: {kind.name.removeprefix('mjWARN_')} in MuJoCo")
-    if not np.isfinite(centre).all():
+    if not np.isfinite(data.qpos).all():
         raise EngineError(f"unstable before {time:g} s: the robot's place is no number")
-    if abs(centre[0]) > size[0] or abs(centre[1]) > size[1]:
-        raise EngineError(f"left the terrain before {time:g} s")
 
 
-def draw(model: Any, poses: Array, width: int, height: int, view: Mapping[str, float]) -> Iterator[NDArray[np.uint8]]:
+def draw(
+    model: Any, poses: Iterable[Array], width: int, height: int, view: Mapping[str, float]
+) -> Iterator[NDArray[np.uint8]]:
     """Yield a picture (height, width, 3) for each pose; the camera follows the robot.
 
     view: distance (m), azimuth and elevation (deg). Needs OpenGL: call it by `drawing.pictures`, which sets it up.

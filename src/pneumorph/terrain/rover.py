@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import pi
+from typing import Generic, TypeVar
 
 from pneumorph.errors import InputError
+from pneumorph.terrain.soft_wheel import SoftWheel
 from pneumorph.terrain.wheels import Wheel
 from pneumorph.units import show
 
 GRAVITY = 9_810.0  # mm/s2
+W = TypeVar("W", Wheel, SoftWheel)
 
 
 @dataclass(frozen=True)
-class Rover:
+class Rover(Generic[W]):
     """Four equal wheels at the corners of `wheelbase` (x) by `track` (y) around a box; mm and tonne.
 
     mass is that of the whole robot, of which each wheel has `wheel_mass`; the axles lie at half the box's height.
@@ -23,7 +26,7 @@ class Rover:
     wheels larger than the track or the wheelbase leave room for.
     """
 
-    wheel: Wheel
+    wheel: W
     mass: float = 500e-6
     wheel_mass: float = 50e-6
     wheelbase: float = 600.0
