@@ -2,18 +2,33 @@
 
 from pneumorph.measures.cavity_volume import CavityVolume
 from pneumorph.measures.centre_line import CentreLine, centre_line
+from pneumorph.measures.centre_of_mass import CentreOfMass
+from pneumorph.measures.chambers import ChamberSpread
 from pneumorph.measures.chord_angle import ChordAngle
 from pneumorph.measures.circle import Circle, fit_circle
 from pneumorph.measures.curvature import Curvature, CurvatureResidual
 from pneumorph.measures.diameter import Diameter
 from pneumorph.measures.energy import EnergyImbalance, energy_check
+from pneumorph.measures.linearised import Linearised, linearise, linearised_stress
 from pneumorph.measures.locate import locate
 from pneumorph.measures.reactions import ReactionForce, ReactionMoment
-from pneumorph.measures.stress import LargestStress, MeanStress, PathValues, StressAt, along_path, at_points
+from pneumorph.measures.slip import slip
+from pneumorph.measures.stress import (
+    LargestStress,
+    MeanStress,
+    PathValues,
+    StressAt,
+    StressQuantile,
+    along_path,
+    at_points,
+)
 from pneumorph.measures.tip_rotation import TipRotation
+from pneumorph.measures.turn_rate import LineLength, TurnRate
 
 __all__ = [
-    "CavityVolume", "CentreLine", "ChordAngle", "Circle", "Curvature", "CurvatureResidual", "Diameter",
-    "EnergyImbalance", "LargestStress", "MeanStress", "PathValues", "ReactionForce", "ReactionMoment", "StressAt",
-    "TipRotation", "along_path", "at_points", "centre_line", "energy_check", "fit_circle", "locate",
+    "CavityVolume", "CentreLine", "CentreOfMass", "ChamberSpread", "ChordAngle", "Circle", "Curvature",
+    "CurvatureResidual", "Diameter", "EnergyImbalance", "LargestStress", "LineLength", "Linearised", "MeanStress",
+    "PathValues", "ReactionForce", "ReactionMoment", "StressAt", "StressQuantile", "TipRotation", "TurnRate",
+    "along_path", "at_points", "centre_line", "energy_check", "fit_circle", "linearise", "linearised_stress", "locate",
+    "slip",
 ]  # fmt: skip

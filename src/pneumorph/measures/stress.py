@@ -2,7 +2,8 @@
 
 Quantities (Cauchy stresses in MPa; axes x, y, z; z is across the plane in plane strain, the hoop direction with axial
 symmetry): von_mises, largest_principal_stress, smallest_principal_stress, mean_stress (a third of the trace),
-stress_xx .. stress_zx, largest_stretch, middle_stretch, smallest_stretch.
+stress_xx .. stress_zx, largest_stretch, middle_stretch, smallest_stretch, equivalent_strain (von Mises's of the
+logarithmic strain).
 """
 
 from __future__ import annotations
@@ -34,6 +35,13 @@ def _stretch(number: int) -> Quantity:
     return lambda _, right: np.sqrt(np.maximum(principal(right)[..., number], 0.0))
 
 
+def _equivalent_strain(_: Array, right: Array) -> Array:
+    """Return sqrt(2/3 e:e) with the deviator e of Hencky's logarithmic strain: in uniaxial tension ln(stretch)."""
+    strain = 0.5 * np.log(np.maximum(principal(right), 1e-300))
+    deviator = strain - strain.mean(axis=-1, keepdims=True)
+    return np.asarray(np.sqrt(2.0 / 3.0 * (deviator**2).sum(axis=-1)))
+
+
 # name -> (kind of unit, function of the Cauchy stress and C, both (..., 3, 3))
 QUANTITIES: dict[str, tuple[str, Quantity]] = {
     "von_mises": ("stress", lambda stress, _: von_mises(stress)),
@@ -49,6 +57,7 @@ QUANTITIES: dict[str, tuple[str, Quantity]] = {
     "largest_stretch": ("number", _stretch(0)),
     "middle_stretch": ("number", _stretch(1)),
     "smallest_stretch": ("number", _stretch(2)),
+    "equivalent_strain": ("number", _equivalent_strain),
 }
 
 
@@ -135,6 +144,36 @@ class MeanStress(_StressMeasure):
             total += float((part.volume * values).sum())
             volume += float(part.volume.sum())
         return total / volume
+
+
+@dataclass(frozen=True)
+class StressQuantile(_StressMeasure):
+    """The value of a quantity that a share of the reference volume of a domain (None: of all) does not exceed.
+
+    share: 0 to 1. Unlike the largest value it settles as the mesh is refined, also where corners are sharp.
+    Raises InputError for the share, NameNotFoundError for a quantity or domain.
+    """
+
+    share: float = 0.99
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.share < 1.0:
+            raise InputError(f"stress quantile: share = {self.share!r}, allowed: between 0 and 1")
+        super().__post_init__()
+
+    @property
+    def _prefix(self) -> str:
+        return f"{100.0 * self.share:g}_percent"
+
+    def __call__(self, state: State) -> float:
+        """Return the value, MPa or a stretch."""
+        parts = _parts(state, self.domain)
+        function = quantity(self.quantity)[1]
+        values = np.concatenate([function(part.stress, part.right_cauchy_green).ravel() for part in parts])
+        volume = np.concatenate([part.volume.ravel() for part in parts])
+        order = np.argsort(values)
+        below = np.cumsum(volume[order])
+        return float(values[order][np.searchsorted(below, self.share * below[-1])])
 
 
 @dataclass(frozen=True)
