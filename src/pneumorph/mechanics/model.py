@@ -93,6 +93,12 @@ class Model:
         """Name -> motion of the obstacles that a programme moves; one motion may move several."""
         return {contact.motion.name: contact.motion for contact in self.contacts if contact.motion}
 
+    @property
+    def bodies(self) -> dict[str, tuple[str, ...]]:
+        """Name of each rigid body that has one -> names of the contacts with it."""
+        named = [contact.body for contact in self.contacts if contact.body]
+        return {body: tuple(c.name for c in self.contacts if c.body == body) for body in dict.fromkeys(named)}
+
     @cached_property
     def contact(self) -> Contacts:
         """The contacts at work."""

@@ -116,12 +116,21 @@ class Contacts:
         return share
 
     def blocking(self, start: tuple[Array, Array], end: tuple[Array, Array]) -> list[str]:
-        """Return the names of the contacts that leave less than a hundredth of such a way."""
+        """Return the contacts that leave less than a hundredth of such a way: names and what they are between."""
         names = []
         for contact, pair, old, new in zip(self.contacts, self.pairs, start[1], end[1], strict=True):
             if pair.limit(Place(start[0], float(old)), Place(end[0], float(new))) < 0.01:
-                names.append(f"'{contact.name}'")
+                names.append(_pair(contact))
         return names
+
+    def tightest(self, touches: Mapping[str, Touch]) -> str:
+        """Return a clause on the contact whose surfaces are closest, in terms of its reach; '' where none touches."""
+        pairs = zip(self.contacts, self.pairs, strict=True)
+        touching = [(touches[c.name].distance / p.reach, c) for c, p in pairs if c.name in touches]
+        ratio, contact = min(touching, key=lambda item: item[0], default=(np.inf, None))
+        if contact is None or not np.isfinite(ratio):
+            return ""
+        return f"; closest is contact {_pair(contact)}, {touches[contact.name].distance:.3g} mm apart"
 
     def energy(self, position: Array, ways: Array) -> float:
         """Return the energy stored in the barriers, mJ."""
@@ -178,13 +187,19 @@ class Contacts:
         return result
 
     def _bearing(self, i: int, place: Place, push: Array) -> tuple[float, float]:
-        """Return the area of the named faces within reach, mm2, and the largest pressure, MPa."""
+        """Return the deformed area of the named faces within reach, mm2, and the largest pressure on it, MPa."""
         pair, own = self.pairs[i], self._areas[i] > 0.0
+        blocks = _blocks(self.mesh, self.contacts[i].faces)
         if isinstance(pair, SmoothContact):
-            return pair.bearing(place)
-        size, areas = np.linalg.norm(push[own], axis=1), self._areas[i][own]
+            return pair.bearing(place, force_points(self.mesh, blocks, place.position))
+        areas = nodal_areas(self.mesh, blocks, place.position)[own]
+        size = np.linalg.norm(push[own], axis=1)
         bearing = size > 1e-9 * float(size.max())
         return float(areas[bearing].sum()), float((size / areas).max())
+
+
+def _pair(contact: Contact) -> str:
+    return f"'{contact.name}' between {', '.join(contact.faces)} and {contact.other}"
 
 
 def _numbers(values: Array) -> tuple[float, ...]:
@@ -210,7 +225,7 @@ def _interaction(mesh: Mesh, contact: Contact, shear: float) -> SmoothContact | 
         gap, where = smooth.worst(Place(mesh.points))
         if gap <= 0.0:
             raise InputError(
-                f"{owner}: {', '.join(contact.faces)} and {type(against).__name__} intersect at ({_show(where)}) mm; "
+                f"{owner}: {', '.join(contact.faces)} and {contact.other} intersect at ({_show(where)}) mm; "
                 f"move them apart by {reach - gap:.4g} mm along {_axis(against.gap(where[None])[1][0])}"
             )
         return smooth
@@ -232,6 +247,10 @@ def _interaction(mesh: Mesh, contact: Contact, shear: float) -> SmoothContact | 
     _check_apart(_bodies(mesh, surfaces), mesh, contact)
     if against is None or sides is not None:
         gap = pair.distance(Place(mesh.points), 5.0 * reach)
+        if against is None:  # where facets are large enough, the sides of a crease may meet, too
+            finer = FacetContact(mesh.points, surfaces, reach, stiffness, contact.friction, rings=1)
+            if finer.distance(Place(mesh.points), 5.0 * reach) >= gap:
+                pair = finer
         if contact.reach is None:
             pair.reach = min(reach, gap / 5.0)
         elif gap <= reach and against is None:
@@ -277,15 +296,12 @@ def _check_apart(pair: FacetContact, mesh: Mesh, contact: Contact) -> None:
             if encloses(surfaces.rigid, surfaces.rigid_facets, inside):
                 raise InputError(
                     f"contact '{contact.name}': the body with {', '.join(contact.faces)} lies inside the "
-                    f"{type(against).__name__}, at ({_show(inside)}) mm"
+                    f"{contact.other}, at ({_show(inside)}) mm"
                 )
     if where is None:
         return
     one = ", ".join(contact.faces)
-    other = (
-        "itself" if against is None else ", ".join(against) if isinstance(against, tuple) else type(against).__name__
-    )
-    text = f"contact '{contact.name}': {one} and {other} intersect at ({_show(where)}) mm"
+    text = f"contact '{contact.name}': {one} and {contact.other} intersect at ({_show(where)}) mm"
     if against is None:
         raise InputError(f"{text}; the surface of the body must not cross itself")
     raise InputError(f"{text}; {_shift(pair, mesh)}")

@@ -23,6 +23,7 @@ class Contact:
               surface has with itself or another.
     stiffness: pressure (MPa) at which they are at about three quarters of the reach; default: the smallest shear
               modulus of the model.
+    body:     name of the obstacle in messages, histories and pictures; default: its kind.
     creep:    speed (mm/s) below which friction holds, not to the full; default: a thousandth of the body's size per
               second. A phase without duration counts as one second.
     """
@@ -34,6 +35,7 @@ class Contact:
     reach: float | None = field(default=None, kw_only=True)
     stiffness: float | None = field(default=None, kw_only=True)
     creep: float | None = field(default=None, kw_only=True)
+    body: str = field(default="", kw_only=True)
 
     def __post_init__(self) -> None:
         owner = f"contact '{self.name}'"
@@ -50,6 +52,16 @@ class Contact:
         if isinstance(self.against, tuple) and set(self.against) & set(self.faces):
             twice = ", ".join(sorted(set(self.against) & set(self.faces)))
             raise InputError(f"{owner}: {twice} is on both sides; leave `against` out for contact with itself")
+
+    @property
+    def other(self) -> str:
+        """What the faces may touch, in words: the obstacle by its name or kind, other faces, or 'itself'."""
+        if self.against is None:
+            return "itself"
+        if isinstance(self.against, tuple):
+            return ", ".join(self.against)
+        kind = type(self.against).__name__
+        return f"{kind} '{self.body}'" if self.body else kind
 
     @property
     def motion(self) -> Motion | None:

@@ -53,8 +53,12 @@ def split(blocks: Iterable[FaceBlock]) -> Integers:
     )
 
 
-def force_points(mesh: Mesh, blocks: Iterable[FaceBlock]) -> list[Points]:
-    """Return the force points of faces: the nodes, each once, and the centres of triangles."""
+def force_points(mesh: Mesh, blocks: Iterable[FaceBlock], position: Array | None = None) -> list[Points]:
+    """Return the force points of faces: the nodes, each once, and the centres of triangles.
+
+    position (nodes, d), mm: of the nodes whose areas are meant, by default those of the mesh.
+    """
+    place = mesh.points if position is None else position
     areas = np.zeros(len(mesh.points))
     centres = []
     for block in blocks:
@@ -62,7 +66,7 @@ def force_points(mesh: Mesh, blocks: Iterable[FaceBlock]) -> list[Points]:
         if block.kind == "triangle6":
             places = np.vstack([places, [1 / 3, 1 / 3]])
         shape, gradient = tabulate(block.kind, places)
-        x = mesh.points[block.nodes]
+        x = place[block.nodes]
         size = face_sizes(x, gradient)
         if mesh.space == "axisymmetric":
             radius = np.einsum("qm,em->eq", shape, x[:, :, 0])
@@ -76,13 +80,13 @@ def force_points(mesh: Mesh, blocks: Iterable[FaceBlock]) -> list[Points]:
     return [Points(nodes[:, None], np.ones(1), areas[nodes]), *centres]
 
 
-def nodal_areas(mesh: Mesh, blocks: Iterable[FaceBlock]) -> Array:
-    """Return the area (nodes,) that each node bears, mm2, all positive on the faces.
+def nodal_areas(mesh: Mesh, blocks: Iterable[FaceBlock], position: Array | None = None) -> Array:
+    """Return the area (nodes,) that each node bears, mm2, all positive on the faces; `position` as in `force_points`.
 
     It is that of the finite elements, but for the corners of a triangle: these would bear nothing, and get a share.
     """
     areas = np.zeros(len(mesh.points))
-    for points in force_points(mesh, blocks):
+    for points in force_points(mesh, blocks, position):
         if points.nodes.shape[1] == 1:
             areas[points.nodes[:, 0]] += points.weight
         else:  # the share of the centre goes to the middles: the corners keep 1/20 of the face each

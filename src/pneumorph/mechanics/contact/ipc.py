@@ -52,10 +52,14 @@ class Surfaces:
 class FacetContact:
     """Facets of a mesh against themselves, each other, or a rigid surface (an `Interaction`).
 
-    rest (nodes, d): undeformed nodes; reach: mm; stiffness: MPa; coefficient: of friction.
+    rest (nodes, d): undeformed nodes; reach: mm; stiffness: MPa; coefficient: of friction. rings: vertices of one
+    surface so many edges apart or less are never in contact; 1 lets the sides of a closing crease meet, but needs
+    facets larger than the reach.
     """
 
-    def __init__(self, rest: Array, surfaces: Surfaces, reach: float, stiffness: float, coefficient: float):
+    def __init__(
+        self, rest: Array, surfaces: Surfaces, reach: float, stiffness: float, coefficient: float, rings: int = RINGS
+    ):
         ipctk.set_num_threads(1)  # on several threads its sums round differently from run to run
         self.nodes = np.unique(surfaces.soft)
         self.surfaces, self.along = surfaces, surfaces.along
@@ -72,9 +76,9 @@ class FacetContact:
         areas = np.array(self._mesh.vertex_areas)
         areas[: len(self.nodes)] = surfaces.areas[self.nodes]
         self._mesh.vertex_areas = areas
-        self._mesh.can_collide = self._filter(soft)
+        self._mesh.can_collide = self._filter(soft, rings)
 
-    def _filter(self, soft: Integers) -> Any:
+    def _filter(self, soft: Integers, rings: int) -> Any:
         """Return which vertices may collide: those of different sides, or of one surface if not close neighbours."""
         count, rigid = len(self.nodes), len(self.surfaces.rigid)
         if rigid or self.surfaces.sides is not None:
@@ -87,7 +91,7 @@ class FacetContact:
         steps = sparse.csr_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
         steps = steps + steps.T + sparse.eye(count)
         close = steps
-        for _ in range(RINGS - 1):
+        for _ in range(rings - 1):
             close = close @ steps
         pairs = sparse.triu(close, 1).tocoo()
         return ipctk.make_sparse_filter(

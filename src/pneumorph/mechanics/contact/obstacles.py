@@ -153,9 +153,13 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class SurfaceFile:
-    """The triangles of an STL file (or another surface file that meshio reads), its lengths in mm."""
+    """The triangles of an STL file (or another surface file that meshio reads), its lengths in mm.
+
+    shift: how far (mm) it is moved from where the file has it; left out, not at all.
+    """
 
     path: str
+    shift: tuple[float, ...] = ()
     motion: Motion | None = field(default=None, kw_only=True)
 
     def facets(self, dimension: int) -> tuple[Array, Integers]:
@@ -175,7 +179,10 @@ class SurfaceFile:
         points, where = np.unique(np.asarray(mesh.points, dtype=float), axis=0, return_inverse=True)
         corners = where.ravel()[np.concatenate(triangles)]
         flat = (corners[:, 0] == corners[:, 1]) | (corners[:, 1] == corners[:, 2]) | (corners[:, 2] == corners[:, 0])
-        return points, corners[~flat].astype(np.int64)
+        if flat.all():
+            raise InputError(f"surface file '{self.path}': all its triangles are without area")
+        shift = vector(self.shift or (0.0, 0.0, 0.0), 3, f"surface file '{self.path}'", "shift")
+        return points + shift, corners[~flat].astype(np.int64)
 
 
 Smooth = HalfSpace | Pipe

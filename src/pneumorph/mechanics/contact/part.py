@@ -45,7 +45,8 @@ class Touch:
     """What is reported of a contact in a state.
 
     force: on the named faces (`against` gets the opposite), N; friction: the tangential part of it in it.
-    by_face: the force on each face. area: of the named faces within reach, mm2; pressure: largest at a node, MPa.
+    by_face: the force on each face. area: of the named faces within reach, mm2; pressure: largest at a node, MPa; both
+    as the body is deformed.
     distance: the smallest, mm; infinite where nothing is within reach.
     """
 

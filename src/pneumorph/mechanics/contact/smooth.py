@@ -102,7 +102,8 @@ class SmoothContact:
                 least = KEPT * np.minimum(before, self.reach)
                 short = after < least
                 if short.any():  # gaps are concave along a way: the chord's crossing lies on the safe side
-                    worst = min(worst, float(((before - least) / (before - after))[short].min()))
+                    way = (before - after)[short]
+                    worst = min(worst, float(((before - least)[short] / way).min()))
             if worst == 1.0:
                 return share
             share *= 0.999 * worst
@@ -113,13 +114,14 @@ class SmoothContact:
         least = min(float(self._gaps(group, place)[0].min()) for group in self.points)
         return least if least < self.reach else np.inf
 
-    def bearing(self, place: Place) -> tuple[float, float]:
-        """Return the area within reach, mm2, and the largest pressure, MPa."""
+    def bearing(self, place: Place, deformed: list[Points]) -> tuple[float, float]:
+        """Return the area within reach, mm2, and the largest pressure, MPa; deformed: force points as they are."""
         area, largest = 0.0, 0.0
-        for group in self.points:
+        for group, now in zip(self.points, deformed, strict=True):
             gap, _, _ = self._gaps(group, place)
-            area += float(group.weight[gap < self.reach].sum())
-            largest = max(largest, float(-barrier(gap, self.reach, self.stiffness)[1].min()))
+            area += float(now.weight[gap < self.reach].sum())
+            force = -group.weight * barrier(gap, self.reach, self.stiffness)[1]
+            largest = max(largest, float((force / now.weight).max()))
         return area, largest
 
     def worst(self, place: Place) -> tuple[float, Array]:
