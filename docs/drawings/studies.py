@@ -25,8 +25,9 @@ def keys_text() -> str:
         if not names:
             continue
         array = item.get("type") == "array"
+        named = ".NAME" if _tables(item.get("additionalProperties", {}), definitions) else ""
         parts += [
-            f"\n### `{'[[' if array else '['}{key}{']]' if array else ']'}`\n",
+            f"\n### `{'[[' if array else '['}{key}{named}{']]' if array else ']'}`\n",
             _sentence(item["description"]) + "\n",
         ]
         for name in names:
@@ -77,7 +78,8 @@ def _default(item: Schema) -> str:
 
 
 def _choices(item: Schema) -> str:
-    options = [item, item.get("items", {}), *item.get("anyOf", ())]
+    inner = item.get("items") or {}
+    options = [item, inner, *inner.get("anyOf", ()), *item.get("anyOf", ())]
     words = [f"`{word}`" for option in options for word in option.get("enum", ())]
     return f"; of {', '.join(words)}" if words else ""
 

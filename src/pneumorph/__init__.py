@@ -27,7 +27,8 @@ _PUBLIC = {
     "units": ("parse", "show"),
     "materials": ("Material", "NeoHookean", "Yeoh", "library"),
     "geometry": (
-        "Actuator", "BendingSkin", "Finger", "HexagonalPrism", "PneuNet", "ThickSphere", "ThickTube", "export",
+        "Actuator", "BendingSkin", "Finger", "HexagonalPrism", "PlaneCrawler", "PneuNet", "SoftLimb", "ThickSphere",
+        "ThickTube", "export",
     ),
     "mesh": ("Imported", "Mesh", "MeshSize", "Selector", "generate", "inspect"),
     "mechanics": (
@@ -37,6 +38,7 @@ _PUBLIC = {
     ),
     "solution": ("Solution", "Status", "solve"),
     "measures": ("ChordAngle", "TipRotation"),
+    "gaits": ("Gait", "locomotion"),
     "studies": ("Study", "load_study", "run_study"),
 }  # fmt: skip
 _HOME = {name: module for module, names in _PUBLIC.items() for name in names}
@@ -64,11 +66,15 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from pneumorph.errors import NotConvergedError as NotConvergedError
     from pneumorph.errors import PneumorphError as PneumorphError
     from pneumorph.errors import StorageError as StorageError
+    from pneumorph.gaits import Gait as Gait
+    from pneumorph.gaits import locomotion as locomotion
     from pneumorph.geometry import Actuator as Actuator
     from pneumorph.geometry import BendingSkin as BendingSkin
     from pneumorph.geometry import Finger as Finger
     from pneumorph.geometry import HexagonalPrism as HexagonalPrism
+    from pneumorph.geometry import PlaneCrawler as PlaneCrawler
     from pneumorph.geometry import PneuNet as PneuNet
+    from pneumorph.geometry import SoftLimb as SoftLimb
     from pneumorph.geometry import ThickSphere as ThickSphere
     from pneumorph.geometry import ThickTube as ThickTube
     from pneumorph.geometry import export as export

@@ -27,6 +27,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "angle": ("rad", "deg"),
     "curvature": ("1/mm", "1/mm"),
     "density": ("tonne/mm**3", "kg/m³"),
+    "speed": ("mm/s", "mm/s"),
     "acceleration": ("mm/s**2", "m/s²"),
     "energy": ("mJ", "mJ"),
     "time": ("s", "s"),

@@ -156,8 +156,8 @@ def test_wheels_larger_than_the_track_unknown_parts_and_runs_are_refused(pneumor
     refused(pneumorph(*RIGID, *out, "--radius", "300 mm"), "larger than the wheelbase", "600 mm")
     refused(pneumorph(*RIGID, *out, "--radius", "20 mm"), "hub_radius")
     refused(pneumorph(*RIGID, *out, "--video", "curved-3_flt"), "--video", "did you mean 'curved-3_flat'")
-    refused(pneumorph("reproduce", "soft-wheel"), "--part: missing, allowed for soft-wheel: rigid")
-    refused(pneumorph("reproduce", "soft-wheel", "--part", "limbs"), "--part: limbs, allowed for soft-wheel: rigid")
+    refused(pneumorph("reproduce", "soft-wheel"), "--part: missing, allowed for soft-wheel: limb, rigid")
+    refused(pneumorph("reproduce", "soft-wheel", "--part", "limbs"), "--part: limbs, allowed for soft-wheel: limb, ")
     refused(pneumorph("reproduce", "hexagonal-prism", "--part", "rigid"), "hexagonal-prism has no parts")
     assert not (tmp_path / "out").exists()
 
@@ -179,9 +179,9 @@ def test_parts_are_listed(pneumorph):
 def test_a_terminal_sees_a_bar_with_the_time_left():
     screen = Console(file=io.StringIO(), force_terminal=True, width=120)
     news = rolling.RollingNews(3, 9, {"run": "plain_flat", "status": "done", "distance [m]": 8.78}, 4.0, 66.0)
-    with command._progress_on(screen, 9) as listen:
+    with command.progress_on(screen, command._result) as listen:
         listen(news)
     assert "3 of 9" in screen.file.getvalue()
     assert "about 1 min 06 s left  plain_flat: 8780 mm" in screen.file.getvalue()
     failed = rolling.RollingNews(1, 2, {"run": "a", "status": "failed", "reason": "why"}, 1.0, 1.0)
-    assert command._line(failed) == " 50 %  a: failed, why  elapsed 1 s  left about 1 s"
+    assert command._line(failed, command._result(failed)) == " 50 %  a: failed, why  elapsed 1 s  left about 1 s"

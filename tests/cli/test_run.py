@@ -156,3 +156,15 @@ def test_a_job_that_ignores_ctrl_c_goes_on_ignoring_it(listening):
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with Interrupt():
         assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+
+
+def test_the_last_line_says_how_close_surfaces_and_cells_came(pneumorph, study, tmp_path):
+    done = r"done: \d+ states, \d+ Newton iterations, smallest det F \d\.\d+"
+    result = pneumorph("run", study, "--out", tmp_path / "free", "--no-report")
+    assert re.search(done + "$", result.stdout.strip())
+    wall = '[body.wall]\nshape = "half-space"\npoint = ["{} mm", "0 mm", "0 mm"]\nnormal = "-x"\n'
+    touch = '[[contact]]\nfaces = ["outer"]\nbody = "wall"\n'
+    for place, said in (("15.02", r"0\.\d+ mm"), ("50", "none within reach")):
+        study.write_text(study.read_text().split("[body.wall]")[0] + wall.format(place) + touch)
+        result = pneumorph("run", study, "--out", tmp_path / place, "--no-report")
+        assert re.search(f"{done}, smallest distance {said}$", result.stdout.strip())

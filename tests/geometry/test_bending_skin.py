@@ -6,6 +6,7 @@ import pytest
 
 from pneumorph.errors import GeometryError, MeshError
 from pneumorph.geometry import BendingSkin
+from pneumorph.geometry.bending_skin import SkinSegment
 from pneumorph.mesh import generate
 
 SHORT = {"cells_along": 2, "length": 29.8}
@@ -66,3 +67,69 @@ def test_there_is_no_cad_solid_and_no_setting_of_tetrahedra():
             generate(BendingSkin(), **{name: 0.5})
     with pytest.raises(MeshError, match=r"size = -1\.0: expected a finite number"):
         generate(BendingSkin(), -1.0)
+
+
+def test_segments_make_the_map_from_the_clamp_on():
+    skin = BendingSkin(
+        cells_along=4,
+        segment=(
+            SkinSegment(2, ((6, "honeycomb"), (6, "re-entrant")), cg=0.3),
+            SkinSegment(1, turn=3),
+            SkinSegment(1, ((12, "brick"),), cg=0.5),
+        ),
+    )
+    kinds = [[cell.kind for cell in row] for row in skin.cells]
+    assert kinds[0] == kinds[1] == ["honeycomb"] * 6 + ["re-entrant"] * 6
+    assert kinds[2] == ["honeycomb"] * 3 + ["re-entrant"] * 6 + ["honeycomb"] * 3
+    assert kinds[3] == ["brick"] * 12
+    assert [row[0].cg for row in skin.cells] == [0.3, 0.3, 0.2, 0.5]
+    assert skin.tube.lattice.cells == skin.cells
+
+
+def test_one_segment_is_the_skin_without_segments():
+    assert BendingSkin(segment=(SkinSegment(7),)).cells == BendingSkin().cells
+
+
+def test_turning_all_the_way_around_changes_nothing():
+    """And turning by n columns, then by the rest, is that."""
+    assert BendingSkin(segment=(SkinSegment(7, turn=12),)).cells == BendingSkin().cells
+    assert BendingSkin(segment=(SkinSegment(7, turn=-5),)).cells == BendingSkin(segment=(SkinSegment(7, turn=7),)).cells
+
+
+def test_a_blend_goes_through_bricks():
+    """Between swapped halves of cg = 0.2, half-way lies cg = 0.5; two cells lie a quarter and three quarters of it."""
+    skin = BendingSkin(cells_along=4, blend=2, segment=(SkinSegment(2), SkinSegment(2, turn=6)))
+    assert [row[0].cg for row in skin.cells] == pytest.approx([0.2, 0.35, 0.35, 0.2])
+    assert [row[0].kind for row in skin.cells] == ["re-entrant", "re-entrant", "honeycomb", "honeycomb"]
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"segment": (SkinSegment(3), SkinSegment(3))}, "the segments have 6 rows: expected cells_along = 7"),
+        ({"segment": (SkinSegment(7, ((6, "brick"),)),)}, "segment 1 has 6 columns: expected cells_around = 12"),
+        ({"blend": 2}, "blend = 2: expected segments to blend, or 0"),
+        ({"segment": (SkinSegment(3), SkinSegment(4)), "blend": 3}, "blend = 3: expected an even number of cells"),
+        ({"segment": (SkinSegment(7, cg=0.7),)}, "cg = 0.7 of a re-entrant cell: the gap g"),
+        ({"segment": (SkinSegment(3), SkinSegment(4, turn=3)), "half": True}, "not its own mirror image"),
+    ],
+)
+def test_segments_that_do_not_fit_are_refused(changed, message):
+    with pytest.raises(GeometryError, match=message):
+        BendingSkin(**changed)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"rows": 0}, "rows = 0: expected a whole number of at least 1"),
+        ({"rows": 1, "turn": 0.5}, r"turn = 0\.5: expected a whole number of columns"),
+        ({"rows": 1, "cg": True}, "cg = True: expected a number above 0"),
+        ({"rows": 1, "columns": ((6, "honeycob"),)}, "unknown kind of cell 'honeycob': did you mean 'honeycomb'"),
+        ({"rows": 1, "columns": ((0, "brick"),)}, "columns of a run = 0: expected a whole number of at least 1"),
+        ({"rows": 1, "columns": ()}, "no runs of cells around, expected at least one"),
+    ],
+)
+def test_a_segment_out_of_range_is_refused(given, message):
+    with pytest.raises(GeometryError, match=message):
+        SkinSegment(**given)

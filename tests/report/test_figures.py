@@ -23,7 +23,7 @@ def test_a_curve_with_reported_data_is_an_svg_that_comes_out_the_same_again(ball
 
 def test_a_reported_curve_far_off_does_not_flatten_the_computed_one(monkeypatch, balloon):
     seen = []
-    monkeypatch.setattr(figures, "_svg", lambda figure: seen.append(figure) or b"")
+    monkeypatch.setattr(figures, "svg", lambda figure: seen.append(figure) or b"")
     far = ReportedCurve("far", OVER, ADDED, np.array([0.0, 9.0]), np.array([0.0, 1e9]))
     curve_figure(balloon.history, Curve("Volume", OVER, (ADDED,)), (far,))
     (axes,) = seen[0].axes

@@ -13,6 +13,7 @@ import pytest
 from pneumorph.closed_form.lame import lame_tube
 from pneumorph.closed_form.thick_wall import sphere_pressure
 from pneumorph.materials import Gent, NeoHookean, library
+from pneumorph.measures.centre_of_mass import nodal_mass
 from pneumorph.solution import Solution, Status
 from pneumorph.studies import load_study, run_study, study_from
 
@@ -197,3 +198,14 @@ def test_every_example_says_what_it_is():
         text = (EXAMPLES / name).read_text(encoding="utf-8")
         assert text.startswith("# ")
         assert tomllib.loads(text)["title"]
+
+
+def test_the_ground_bears_the_crawler_and_each_cycle_takes_it_as_far():
+    solution = solved("crawler.toml")
+    model, time = solution.model, solution.history.values("time")
+    ends = np.isin(time, (1.0, 5.0, 9.0))
+    weight = 9810.0 * nodal_mass(model).sum()
+    np.testing.assert_allclose(solution.history.values("contact_force_y:ground")[ends], weight, rtol=0.01)
+    ways = np.diff(solution.history.values("centre_of_mass_x")[ends])
+    assert ways[0] > 0.05
+    assert ways[1] == pytest.approx(ways[0], rel=0.05)

@@ -16,10 +16,13 @@ from pneumorph.studies.reproductions import hexagonal_prism
 
 
 def run_to(*pressures):
-    """Return what stands for a solution: chord angles 100 rad/MPa times the pressure, tip rotations twice that."""
+    """Return what stands for a solution: chord angles 1 rad/MPa, tip rotations twice that, contact from 50 kPa on."""
     columns = [Column("pressure:cavity_1", "", "pressure"), Column("chord_angle", "", "angle")]
-    columns.append(Column("tip_rotation", "", "angle"))
-    rows = [{"pressure:cavity_1": p, "chord_angle": p, "tip_rotation": 2.0 * p} for p in (0.0, *pressures)]
+    columns += [Column("tip_rotation", "", "angle"), Column("contact_area:walls", "", "area")]
+    rows = [
+        {"pressure:cavity_1": p, "chord_angle": p, "tip_rotation": 2.0 * p, "contact_area:walls": max(0.0, p - 0.05)}
+        for p in (0.0, *pressures)
+    ]
     return SimpleNamespace(history=History(columns, rows))
 
 
@@ -29,9 +32,11 @@ def test_the_hexagonal_prism_is_the_published_one_with_two_neighbouring_cavities
     assert [cavity.name for cavity in study.cavities] == ["cavity_1", "cavity_2"]
     assert study.materials["body"].c10 == 0.11
     (phase,) = study.programme.phases
-    assert phase.targets == {"cavity_1": 0.15, "cavity_2": 0.15}
+    assert phase.targets == {"cavity_1": 0.16, "cavity_2": 0.16}
     pressures = [study.programme.values(mark)["cavity_2"] for mark in phase.marks]
     np.testing.assert_allclose(pressures, [0.04, 0.08, 0.12], rtol=1e-14)
+    (contact,) = study.contacts
+    assert (contact.faces, contact.against, contact.friction) == (("outer",), None, 0.0)
 
 
 def test_the_quick_run_is_coarse_and_stops_at_80_kpa():
@@ -41,16 +46,16 @@ def test_the_quick_run_is_coarse_and_stops_at_80_kpa():
     assert study.programme.phases[0].marks == (0.5,)
 
 
-def test_both_angles_are_compared_with_all_three_sources_at_three_pressures():
+def test_both_angles_are_compared_with_all_three_sources_at_all_seven_pressures():
     study = hexagonal_prism.study(quick=False)
     rows = hexagonal_prism.compare(run_to(0.04, 0.08, 0.12), study)
-    assert len(rows) == 2 * 3 * 3
+    assert len(rows) == 2 * 3 * 7 + 1
     table = [row for row in rows if row.quantity == "chord_angle (Table 2, finite elements)"]
-    assert [(row.condition, row.unit) for row in table] == [("40 kPa", "deg"), ("80 kPa", "deg"), ("120 kPa", "deg")]
-    assert [row.reported for row in table] == pytest.approx([5.5, 13.7, 22.6])
+    assert [(row.condition, row.unit) for row in table] == [(f"{p} kPa", "deg") for p in range(40, 281, 40)]
+    assert [row.reported for row in table] == pytest.approx([5.5, 13.7, 22.6, 32.5, 41.5, 47.4, 50.5])
     assert table[0].computed == pytest.approx(math.degrees(0.04))
     assert table[0].relative_difference == pytest.approx(math.degrees(0.04) / 5.5 - 1.0)
-    assert "Table 2 agrees with this angle" in table[0].note
+    assert "the angle that Table 2 is nearest to" in table[0].note
     tip = [row for row in rows if row.quantity == "tip_rotation (Table 2, finite elements)"]
     assert tip[0].computed == pytest.approx(2.0 * table[0].computed)
 
@@ -64,6 +69,14 @@ def test_the_closed_form_and_the_experiment_stand_in_the_rows():
     angle = math.radians(closed.reported)
     assert published.prism_pressure(study.actuator, study.materials["body"], angle) == pytest.approx(0.08)
     assert "as printed" in closed.note
+
+
+def test_the_pressure_at_which_walls_touch_is_that_of_the_first_state_with_contact():
+    study = hexagonal_prism.study(quick=False)
+    *_, touch = hexagonal_prism.compare(run_to(0.04, 0.06, 0.08), study)
+    assert (touch.reported, touch.computed, touch.unit) == (200.0, pytest.approx(60.0), "kPa")
+    *_, none = hexagonal_prism.compare(run_to(0.04), study)
+    assert none.computed is None
 
 
 def test_rows_that_were_not_reached_stay_empty_and_say_so():

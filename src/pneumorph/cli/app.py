@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 import pneumorph
-from pneumorph.cli import doctor, export, fit, materials, mesh, new, report, reproduce, run, schema, sweep
+from pneumorph.cli import design, doctor, export, fit, materials, mesh, new, report, reproduce, run, schema, sweep
 from pneumorph.cli.output import BAD_INPUT, DONE, FAILED, INTERRUPTED, complain
 from pneumorph.errors import InputError, PneumorphError, StorageError
 from pneumorph.threads import thread_count
@@ -64,6 +64,7 @@ def common(
 
 app.command("run")(run.run)
 app.command("sweep")(sweep.sweep)
+app.command("design")(design.design)
 app.command("reproduce")(reproduce.reproduce)
 app.command("report")(report.report)
 app.command("export")(export.export)

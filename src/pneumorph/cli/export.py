@@ -17,7 +17,12 @@ def export(
     what: Annotated[
         str | None, typer.Option(help="mesh (undeformed), state, pv (pressure-volume curve) or history.")
     ] = None,
-    part: Annotated[str, typer.Option(help="Surface in .stl and .step: whole, or outer (without cavities).")] = "whole",
+    part: Annotated[
+        str,
+        typer.Option(
+            help="In .stl and .step: whole, outer (no cavities); .stl: bodies (rigid ones), wheel (of a limb)."
+        ),
+    ] = "whole",
     dialect: Annotated[str, typer.Option(help="Program that reads the .inp file: calculix or abaqus.")] = "calculix",
     pressures: Annotated[
         bool, typer.Option("--pressures", help="In .inp: the pressures of the run in the place of its supplies.")

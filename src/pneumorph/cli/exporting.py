@@ -15,6 +15,7 @@ from pneumorph.exchange import (
     Written,
     pressures_of,
     up_to,
+    write_bodies,
     write_inp,
     write_nodes,
     write_pressure_volume,
@@ -22,14 +23,15 @@ from pneumorph.exchange import (
     write_stl,
     write_vtu,
 )
+from pneumorph.exchange.wheel import write_wheel
 from pneumorph.exchange.written import put
-from pneumorph.geometry import occ
+from pneumorph.geometry import SoftLimb, occ
 from pneumorph.mechanics import Model, Programme, State
 from pneumorph.solution import Solution
 from pneumorph.studies import Study, load_study, study_from
 from pneumorph.units import parse, show
 
-WHOLE = PARTS[0]
+WHOLE, WHEEL, BODIES = PARTS[0], "wheel", "bodies"
 MESH, STATE, CURVE, HISTORY = "mesh", "state", "pv", "history"
 # suffix -> what can be written there, the default of a run first
 ALLOWED = {
@@ -95,6 +97,8 @@ def _of_study(source: Path, wanted: Wanted) -> Written:
 
 def _of_run(solution: Solution, wanted: Wanted) -> Written:
     what = wanted.what or ALLOWED[wanted.suffix][0]
+    if wanted.part == WHEEL:
+        return _wheel(solution, wanted, what)
     title = str(solution.about.get("title") or solution.about.get("name") or "run")
     if what == HISTORY:
         solution.history.write_csv(wanted.to)
@@ -110,6 +114,24 @@ def _of_run(solution: Solution, wanted: Wanted) -> Written:
         assert state is not None
         return write_nodes(wanted.to, state)
     return _body(solution.model, state, wanted, title if state is None else f"{title}, state {state.index}")
+
+
+def _wheel(solution: Solution, wanted: Wanted, what: str) -> Written:
+    """Write the wheel of a soft limb's run, at any pressure that the run comes to."""
+    if wanted.suffix != ".stl" or what != STATE:
+        raise InputError(f"--part {WHEEL}: only a state as .stl, not {wanted.suffix} ({what})")
+    limb = None
+    if "study" in solution.about:
+        actuator = study_from(solution.about["study"], str(solution.about["name"])).actuator
+        if not isinstance(actuator, SoftLimb):
+            raise InputError(f"--part {WHEEL}: expected a run of the template soft-limb, not {type(actuator).__name__}")
+        limb = actuator
+    try:
+        pressure = parse(wanted.state, "pressure", "--state")
+    except UnitError:
+        state = solution.states[find_state(solution, wanted.state)]
+        pressure = next(iter(state.pressure.values()), 0.0)
+    return write_wheel(wanted.to, solution, pressure, limb=limb)
 
 
 def _is_exact(wanted: Wanted) -> bool:
@@ -141,6 +163,10 @@ def _inp(
 
 
 def _body(model: Model, state: State | None, wanted: Wanted, title: str) -> Written:
+    if wanted.part == BODIES:
+        if wanted.suffix != ".stl":
+            raise InputError(f"--part {BODIES}: only as .stl, not {wanted.suffix}")
+        return write_bodies(wanted.to, model, state, title=title)
     if wanted.suffix == ".vtu":
         return write_vtu(wanted.to, model, state)
     if wanted.suffix == ".stl":

@@ -28,6 +28,7 @@ def report_reproduction(solution: Solution, chosen: Reproduction, study: Study) 
         solution,
         comparison=chosen.compare(solution, study),
         reported=chosen.curves(study),
+        profiles=chosen.profiles(solution, study),
         source=chosen.source,
         notes=chosen.notes,
     )
@@ -35,8 +36,17 @@ def report_reproduction(solution: Solution, chosen: Reproduction, study: Study) 
 
 def report_folder(folder: Path) -> Path:
     """Write the report of a run folder anew; return its path. Raises StorageError for a folder without a run."""
+    from pneumorph.cli.granular import is_granular, report_granular
+    from pneumorph.cli.limb import is_limb, report_limb
+    from pneumorph.cli.reduced import is_reduced, report_reduced
     from pneumorph.cli.rolling import is_rolling, report_rolling
 
+    if is_limb(folder):
+        return report_limb(folder)
+    if is_reduced(folder):
+        return report_reduced(folder)
+    if is_granular(folder):
+        return report_granular(folder)
     if is_rolling(folder):
         return report_rolling(folder)
     solution = Solution.open(folder)

@@ -55,7 +55,7 @@ def reproduce_rigid(
     screen = console()
     screen.print(f"{SYSTEM.title}, part rigid: {len(runs)} runs, {workers.text}\nfolder: {folder}", markup=False)
     try:
-        with _progress_on(screen, len(runs)) as progress:
+        with progress_on(screen, _result) as progress:
             rows = run_rolling(
                 runs, folder, study.settings(), resume=resume, workers=workers, progress=progress, command=command
             )
@@ -133,22 +133,25 @@ def _check_video(name: str | None, known: list[str]) -> None:
 
 
 @contextmanager
-def _progress_on(screen: Console, total: int) -> Iterator[Callable[[RollingNews], None]]:
-    """Give a listener that shows a bar on a terminal, and a line for each run elsewhere."""
+def progress_on(screen: Console, result: Callable[[RollingNews], str]) -> Iterator[Callable[[RollingNews], None]]:
+    """Give a listener that shows a bar on a terminal, and a line for each run elsewhere; result: a run in words."""
     if not screen.is_terminal:
-        yield lambda news: screen.print(_line(news), markup=False)
+        yield lambda news: screen.print(_line(news, result(news)), markup=False)
         return
-    columns = (TextColumn("{task.completed:.0f} of {task.total:.0f}"), BarColumn(), TextColumn("{task.description}"))
+    columns = (TextColumn("{task.completed:.0f} of {task.total}"), BarColumn(), TextColumn("{task.description}"))
     with Progress(*columns, console=screen) as bar:
-        task = bar.add_task("starting", total=total)
+        task = bar.add_task("starting", total=None)
         yield lambda news: bar.update(
-            task, completed=news.finished, description=f"about {clock(news.remaining)} left  {_result(news)}"
+            task,
+            total=news.total,
+            completed=news.finished,
+            description=f"about {clock(news.remaining)} left  {result(news)}",
         )
 
 
-def _line(news: RollingNews) -> str:
+def _line(news: RollingNews, result: str) -> str:
     left = f"elapsed {clock(news.elapsed)}  left about {clock(news.remaining)}"
-    return f"{100.0 * news.finished / news.total:3.0f} %  {_result(news)}  {left}"
+    return f"{100.0 * news.finished / news.total:3.0f} %  {result}  {left}"
 
 
 def _result(news: RollingNews) -> str:

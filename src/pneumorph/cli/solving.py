@@ -12,6 +12,7 @@ from pneumorph.cli.output import INTERRUPTED, STOPPED, complain, console
 from pneumorph.cli.progress import progress_on
 from pneumorph.solution import Progress, Solution, Status
 from pneumorph.studies import Study, run_study
+from pneumorph.units import show
 
 
 def solve_and_report(
@@ -52,4 +53,17 @@ def solve_and_report(
     if solution.status is Status.STOPPED:
         complain(f"stopped before the target: {solution.message}\n{len(solution.states)} states are kept in {folder}")
         raise typer.Exit(STOPPED)
-    out.print(f"done: {len(solution.states)} states, {solution.meta['iterations']} Newton iterations", markup=False)
+    out.print(
+        f"done: {len(solution.states)} states, {solution.meta['iterations']} Newton iterations{_margins(solution)}",
+        markup=False,
+    )
+
+
+def _margins(solution: Solution) -> str:
+    """Return how far a run stayed from turning cells inside out and, with contact, from surfaces that cross."""
+    history = solution.history
+    text = f", smallest det F {history.smallest('smallest_volume_ratio') or 1.0:.3g}"
+    if not solution.model.contacts:
+        return text
+    least = history.smallest("contact_distance:")
+    return f"{text}, smallest distance " + ("none within reach" if least is None else show(least, "length", 3))

@@ -3,9 +3,11 @@
 from pneumorph.geometry.actuator import Actuator, Dimension
 from pneumorph.geometry.bending_skin import BendingSkin
 from pneumorph.geometry.cad import export
+from pneumorph.geometry.crawler import PlaneCrawler
 from pneumorph.geometry.finger import Finger
 from pneumorph.geometry.hexagonal_prism import HexagonalPrism
 from pneumorph.geometry.pneunet import PneuNet
+from pneumorph.geometry.soft_limb import SoftLimb
 from pneumorph.geometry.thick_sphere import ThickSphere
 from pneumorph.geometry.thick_tube import ThickTube
 
@@ -15,7 +17,9 @@ __all__ = [
     "Dimension",
     "Finger",
     "HexagonalPrism",
+    "PlaneCrawler",
     "PneuNet",
+    "SoftLimb",
     "ThickSphere",
     "ThickTube",
     "export",

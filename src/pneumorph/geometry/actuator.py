@@ -95,6 +95,11 @@ class Actuator(ABC):
         """Volume of one cavity as drawn, mm³."""
 
     @property
+    def space(self) -> str:
+        """'3d', or 'plane_strain' for a template that lies in the plane of x and y."""
+        return "3d"
+
+    @property
     def axis(self) -> tuple[float, float, float]:
         """Unit vector from the clamp to the tip."""
         return (0.0, 0.0, 1.0)

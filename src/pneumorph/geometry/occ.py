@@ -85,6 +85,43 @@ def side_prism(profile: Sequence[tuple[float, float]], y0: float, y1: float) -> 
     return plane.Close().Face().Extrude((y0 - y1) * occ.Y)
 
 
+def side_sector(
+    centre: tuple[float, float], radii: tuple[float, float], angles: tuple[float, float], y0: float, y1: float
+) -> Shape:
+    """Return a sector of a ring in the xz plane, extruded from y0 to y1.
+
+    radii: inner and outer, mm; angles: start and end, rad, from +z towards +x.
+    """
+    (inner, outer), (start, stop) = radii, angles
+    corners = [
+        (centre[0] + radius * math.sin(angle), centre[1] + radius * math.cos(angle))
+        for radius, angle in ((outer, stop), (outer, start), (inner, start))
+    ]
+    turn = math.degrees(stop - start)
+    plane = occ.WorkPlane(occ.Axes(occ.Pnt(0, y1, 0), -occ.Y, occ.X)).MoveTo(*corners[0])
+    plane.Direction(-math.cos(stop), math.sin(stop)).Arc(outer, turn).LineTo(*corners[2])
+    plane.Direction(math.cos(start), -math.sin(start)).Arc(inner, -turn).Close()
+    return plane.Face().Extrude((y0 - y1) * occ.Y)
+
+
+def name_plane_faces(shape: Shape, point: Point, normal: Point, name: str) -> None:
+    """Name the faces whose corners all lie in a plane, given by a point and its unit normal."""
+    for face in shape.faces:
+        if all(abs(sum((a - b) * n for a, b, n in zip(p, point, normal, strict=True))) < 1e-5 for p in _ends(face)):
+            face.name = name
+
+
+def name_round_faces(shape: Shape, centre: tuple[float, float], radius: float, name: str) -> None:
+    """Name the faces whose corners all lie on a cylinder about an axis along y, through (x, z)."""
+    for face in shape.faces:
+        if all(abs(math.hypot(x - centre[0], z - centre[1]) - radius) < 1e-5 for x, _, z in _ends(face)):
+            face.name = name
+
+
+def _ends(face: Any) -> list[Point]:
+    return [(vertex.p.x, vertex.p.y, vertex.p.z) for vertex in face.vertices]
+
+
 def cylinder(radius: float, z0: float, z1: float, name: str | None = None) -> Shape:
     """Return a cylinder about the z axis, all its faces named `name`."""
     return named(occ.Cylinder(occ.Pnt(0, 0, z0), occ.Z, r=radius, h=z1 - z0), name)

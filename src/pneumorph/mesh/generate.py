@@ -12,7 +12,9 @@ from pneumorph.errors import MeshError
 from pneumorph.geometry import occ
 from pneumorph.geometry.actuator import Actuator
 from pneumorph.geometry.bending_skin import BendingSkin
+from pneumorph.geometry.crawler import PlaneCrawler
 from pneumorph.mesh.body import MeshSize
+from pneumorph.mesh.crawler import mesh_crawler
 from pneumorph.mesh.imported import Imported
 from pneumorph.mesh.mesh import CellBlock, FaceBlock, Mesh
 from pneumorph.mesh.quadratic import positive
@@ -39,7 +41,8 @@ def generate(
     wall_size: largest edge in mm on the cavity faces, if smaller than `size`.
 
     An imported body is meshed when it is made: here its mesh is returned or, with other settings, made anew. A
-    `BendingSkin` is layered (see `mesh.skinned`): of the settings it takes size and coarse only.
+    `BendingSkin` is layered (see `mesh.skinned`), a `PlaneCrawler` a plane grid (see `mesh.crawler`): of the settings
+    they take size and coarse only.
 
     Raises MeshError for settings out of range or a solid that Netgen cannot mesh.
     """
@@ -48,11 +51,13 @@ def generate(
             raise MeshError(f"mesh: wall_size = {wall_size!r}: only templates know their walls before they are meshed")
         asked = MeshSize(size, coarse, grading, detail)
         return actuator.mesh if asked in (MeshSize(), actuator.meshing) else replace(actuator, meshing=asked).mesh
-    if isinstance(actuator, BendingSkin):
+    if isinstance(actuator, BendingSkin | PlaneCrawler):
         for name, value in (("grading", grading), ("detail", detail), ("wall_size", wall_size)):
             if value is not None:
                 raise MeshError(f"mesh: {name} = {value!r}: a layered mesh has its size only, leave it out")
         chosen = (actuator.default_size * (2.0 if coarse else 1.0)) if size is None else _positive("size", size)
+        if isinstance(actuator, PlaneCrawler):
+            return mesh_crawler(actuator, chosen)
         return mesh_skinned_tube(actuator.tube, chosen, half=actuator.half)
     size = _positive("size", actuator.default_size * (1.625 if coarse else 1.0) if size is None else size)
     grading = _positive("grading", 0.8 if grading is None else grading, 1.0)

@@ -76,7 +76,8 @@ def frames(drawing: Drawing, field: Field, states: Sequence[State]) -> Iterator[
             for moment in moments:
                 place = _between([state.positions for state in states], moment)
                 colour = _between(values, moment)
-                columns[-1].append(scene.draw(layers(place, colour, (low, high), field)))
+                bodies = drawing.bodies.layers(_driven(states, moment))
+                columns[-1].append(scene.draw([*layers(place, colour, (low, high), field), *bodies]))
     shown = None
     for number, moment in enumerate(moments):
         row = [("", column[number]) for column in columns]
@@ -98,6 +99,13 @@ def _between(items: Sequence[Array], moment: float) -> Array:
     one = int(moment + 1e-9)
     two = min(one + 1, len(items) - 1)
     return (1.0 - (moment - one)) * items[one] + (moment - one) * items[two]
+
+
+def _driven(states: Sequence[State], moment: float) -> dict[str, float]:
+    """Return the linear interpolation of what the programme drives."""
+    names = list(dict.fromkeys(name for state in states for name in state.values))
+    values = [np.array([state.values.get(name, 0.0) for name in names]) for state in states]
+    return dict(zip(names, _between(values, moment).tolist(), strict=True))
 
 
 def _moments(states: int) -> Array:

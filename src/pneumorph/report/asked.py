@@ -112,7 +112,19 @@ def _boundary_tables(model: Model) -> list[Table]:
     if cavities:
         result.append(Table("Cavities", ("Cavity", "Supply", "Faces", "Volume at rest"), tuple(cavities)))
     tubes = tuple((" and ".join(tube.between), _with_numbers(tube)) for tube in model.tubes)
-    return [*result, Table("Tubes", ("Between", "Line"), tubes)] if tubes else result
+    result += [Table("Tubes", ("Between", "Line"), tubes)] if tubes else []
+    return [*result, _contact_table(model)] if model.contacts else result
+
+
+def _contact_table(model: Model) -> Table:
+    """Return what may touch what, with the settings that were used."""
+    rows: list[tuple[Cell | str, ...]] = []
+    for contact, pair in zip(model.contacts, model.contact.pairs, strict=True):
+        moved = f", driven as '{contact.motion.name}'" if contact.motion else ""
+        numbers = (f"{contact.friction:g}", show(pair.reach, "length", 3), show(pair.stiffness, "stress", 3))
+        cells = (Cell(text, number=True) for text in numbers)
+        rows.append((contact.name, ", ".join(contact.faces), contact.other + moved, *cells))
+    return Table("Contact", ("Contact", "Faces", "Against", "Friction", "Reach", "Stiffness"), tuple(rows))
 
 
 def _with_numbers(item: Supply | Tube) -> str:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from pneumorph.report.figures import Curve
+from pneumorph.report.findings import is_part
 from pneumorph.solution import Solution
 
 _BESIDE = {"strain_energy", "supply_work", "load_work", "viscous_loss", "energy_error", "iterations"}
 _BESIDE |= {"clock", "kinetic_energy", "numerical_loss", "contact_energy", "friction_loss"}
+# columns of force components -> title of the figure
+_FORCES = {"contact_force_": "Force in contact", "body_force_": "Force on body"}
 _BESIDE |= {"unstable_modes", "smallest_volume_ratio", "index", "phase", "time"}
 
 
@@ -28,7 +31,8 @@ def default_curves(solution: Solution) -> list[Curve]:
     """Return measures over the pressure (angles together, others alone) and the pressure over the added volume."""
     history, over = solution.history, driver(solution)
     beside = ("pressure:", "volume:", "added_volume:", "value:")
-    measures = [c for c in history.columns if c.key not in _BESIDE and not c.key.startswith(beside)]
+    columns = [c for c in history.columns if c.key not in _BESIDE and not c.key.startswith(beside)]
+    measures = [c for c in columns if not c.key.startswith(tuple(_FORCES))]
     result = []
     angles = tuple(c.key for c in measures if c.kind == "angle")
     if angles:
@@ -39,6 +43,11 @@ def default_curves(solution: Solution) -> list[Curve]:
         values = history.values(column.key)
         if column.kind != "angle" and np.isfinite(values).any() and np.ptp(values[np.isfinite(values)]) > 0.0:
             result.append(Curve(column.label.capitalize(), over, (column.key,)))
+    for prefix, title in _FORCES.items():  # the components of a force share a figure
+        for owner in dict.fromkeys(c.key.partition(":")[2] for c in columns if c.key.startswith(prefix)):
+            keys = tuple(c.key for c in columns if c.key.startswith(prefix) and c.key.partition(":")[2] == owner)
+            if any(history.values(key).any() for key in keys) and not is_part(keys[0]):
+                result.append(Curve(f"{title} {owner}", over, keys))
     if over == "clock":
         driven = [c for c in history.columns if c.key.startswith(("pressure:", "value:"))]
         moved = [c for c in driven if history.values(c.key).any()]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pneumorph.mechanics import State
 from pneumorph.mesh.mesh import Mesh
 from pneumorph.report import style
+from pneumorph.report.bodies import RigidBodies
 from pneumorph.report.cut import Plane, cap, cut_lines, cut_surface, rim
 from pneumorph.report.fields import Field
 from pneumorph.report.render import Layer
@@ -42,7 +43,14 @@ class Drawing:
     def view(self) -> View:
         """The camera that sees the bending plane face-on."""
         view = face_on(self.states)
+        if bodies := self.bodies.clouds(self.states):
+            view = view.fitted([self.mesh.points, *(state.positions for state in self.states), *bodies])
         return view.fitted(self._clouds(self.states)) if len(self._signs) > 1 else view
+
+    @cached_property
+    def bodies(self) -> RigidBodies:
+        """What the body may touch."""
+        return RigidBodies(self.states)
 
     @cached_property
     def _cut(self) -> tuple[Plane, View]:

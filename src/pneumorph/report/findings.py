@@ -93,6 +93,7 @@ def checks_table(solution: Solution, quality: Quality) -> Table:
         ("Energy lost in viscosity", f"{loss:.2%} of the work", limit, viscous or loss <= _LOSS),
         ("Unstable modes", stability, "none", known and not len(unstable)),
         ("Smallest det F", f"{ratio:.3f}", "more than 0", ratio > 0.0),
+        *_contact_rows(solution),
         ("Smallest Jacobian ratio of the mesh", f"{jacobian:.3f}", "more than 0", jacobian > 0.0),
         ("Stability of the materials (Drucker)", softening or "stable", stretches, not softening),
         ("Warnings of the mesh", str(len(quality.warnings) or "none"), "none", not quality.warnings),
@@ -102,6 +103,15 @@ def checks_table(solution: Solution, quality: Quality) -> Table:
         for what, found, wanted, good in rows
     )
     return Table("", ("Check", "Found", "Wanted", "Verdict"), body)
+
+
+def _contact_rows(solution: Solution) -> list[tuple[str, str, str, bool]]:
+    """Return the smallest distance of surfaces that may touch, in a run with contact."""
+    if not solution.model.contacts:
+        return []
+    least = solution.history.smallest("contact_distance:")
+    text = "none within reach" if least is None else show(least, "length", 3)
+    return [("Smallest distance in contact", text, "more than 0", least is None or least > 0.0)]
 
 
 def mesh_table(solution: Solution, quality: Quality) -> Table:
@@ -151,9 +161,14 @@ def _shown(solution: Solution) -> list[Column]:
             groups.append([cavity])
     result = [Column(f"pressure:{g[0]}", f"gauge pressure in {', '.join(g)}", "pressure") for g in groups]
     beside = ("pressure:", "volume:", "added_volume:")
-    result += [c for c in history.columns if c.key not in _INSIDE and not c.key.startswith(beside)]
+    result += [c for c in history.columns if not (c.key in _INSIDE or c.key.startswith(beside) or is_part(c.key))]
     result += [history.column(f"added_volume:{cavity}") for g in groups for cavity in g]
     return [*result, history.column("unstable_modes")]
+
+
+def is_part(key: str) -> bool:
+    """Return whether a column is a part of another one: the force of a contact on one of its faces."""
+    return key.startswith("contact_force_") and key.count(":") == 2
 
 
 def _head(column: Column) -> str:

@@ -37,6 +37,7 @@ class Page:
     checks: Table
     versions: Table
     all_states: Table | None = None
+    cycles: Table | None = None
     source: str = ""
     command: str = ""
     notes: list[str] = field(default_factory=list)

@@ -63,13 +63,13 @@ def mesh_picture(drawing: Drawing) -> Picture:
 def field_picture(drawing: Drawing, field: Field, state: State, scale: Sequence[State] | None = None) -> Picture:
     """Return a state coloured by a field, outside and cut; `scale`: the states that set the ends of the colours."""
     low, high, largest = drawing.limits(field, scale or [state])
-    values = drawing.values(field, state)
+    values, bodies = drawing.values(field, state), drawing.bodies.layers(state.values)
     with Scene(drawing.view, height_of(drawing.view)) as scene:
-        panels = [(caption(state), scene.draw(drawing.body(state.positions, values, (low, high), field)))]
+        panels = [(caption(state), scene.draw([*drawing.body(state.positions, values, (low, high), field), *bodies]))]
     if not drawing.flat:
         with Scene(drawing.cut_view, height_of(drawing.cut_view)) as scene:
             layers = drawing.cut_body(state.positions, values, (low, high), field)
-            panels.append(("Cut along the body", scene.draw(layers)))
+            panels.append(("Cut along the body", scene.draw([*layers, *bodies])))
     return compose(panels, bar=bar(field, low, high, largest), columns=_columns([p for _, p in panels]))
 
 
@@ -78,13 +78,10 @@ def shapes_picture(drawing: Drawing, field: Field, states: Sequence[State]) -> P
     low, high, largest = drawing.limits(field, states)
     height = height_of(drawing.view, _AREA / 2)
     with Scene(drawing.view, height) as scene:
-        panels = [
-            (
-                caption(state),
-                scene.draw(drawing.body(state.positions, drawing.values(field, state), (low, high), field)),
-            )
-            for state in states
-        ]
+        panels = []
+        for state in states:
+            layers = drawing.body(state.positions, drawing.values(field, state), (low, high), field)
+            panels.append((caption(state), scene.draw([*layers, *drawing.bodies.layers(state.values)])))
     return compose(panels, bar=bar(field, low, high, largest), columns=_columns([p for _, p in panels]))
 
 

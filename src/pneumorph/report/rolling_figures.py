@@ -45,7 +45,7 @@ def distance_figure(table: Mapping[str, Mapping[str, Cell]], terrains: Sequence[
         axes.spines[:].set_visible(False)
         axes.set_title("Mean distance [m]")
         figure.colorbar(shown, ax=axes, shrink=0.8).outline.set_linewidth(0.6)
-        return _svg(figure)
+        return svg(figure)
 
 
 def progress_figure(ways: Mapping[str, Ways], limits: Sequence[float]) -> bytes:
@@ -116,7 +116,7 @@ def _panels(names: Sequence[str], draw: Callable[[Axes, str], None], height: flo
             axes.set_title(name)
         lines, labels = grid.flat[0].get_legend_handles_labels()
         figure.legend(lines, labels, loc="outside lower center", ncols=5)
-        return _svg(figure)
+        return svg(figure)
 
 
 def _look(wheel: str) -> dict[str, Any]:
@@ -127,7 +127,8 @@ def _look(wheel: str) -> dict[str, Any]:
     return {"color": colour, "linestyle": "--" if wheel.startswith("curved") else "-", "linewidth": 1.5}
 
 
-def _svg(figure: Figure) -> bytes:
+def svg(figure: Figure) -> bytes:
+    """Return a figure as SVG, the same bytes for the same figure."""
     stream = io.BytesIO()
     figure.savefig(stream, format="svg", metadata={"Date": None}, dpi=120)
     return stream.getvalue()

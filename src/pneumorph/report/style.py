@@ -27,6 +27,7 @@ SECTION = rgb("#b5a48f")
 DOMAINS = (BODY, rgb("#a9b7c0"), rgb("#c9b1c4"), rgb("#b7c4a3"))
 GHOST = rgb("#8d99a6")
 EDGE = rgb("#2b333b")
+OBSTACLE = rgb("#7d8a97")
 
 # faces by name: roles first, then cavities in order
 _ROLES = {"clamp": "#44546a", "tip": "#f0c808", "outer": "#d9cfc3", "core": "#a9b7c0", "unnamed": "#eeeeee"}

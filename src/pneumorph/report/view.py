@@ -130,10 +130,10 @@ def _sideways(state: State, along: Array) -> Array:
 
 
 def _snapped(direction: Array) -> Array:
-    """Return a direction of length 1, along a coordinate axis if it is within two degrees of it."""
+    """Return a direction of length 1, along a coordinate axis if it is within five degrees of it."""
     unit = direction / np.linalg.norm(direction)
     nearest = np.round(unit)
-    return np.asarray(nearest if np.abs(unit).max() > np.cos(np.radians(2.0)) else unit)
+    return np.asarray(nearest if np.abs(unit).max() > np.cos(np.radians(5.0)) else unit)
 
 
 def _vector(values: Array) -> Vector:

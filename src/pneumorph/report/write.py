@@ -12,7 +12,7 @@ import numpy as np
 from pneumorph.errors import EngineError, InputError
 from pneumorph.mechanics import State
 from pneumorph.mesh import inspect
-from pneumorph.report import figures, findings
+from pneumorph.report import figures, findings, gait_figures
 from pneumorph.report.asked import asked_tables
 from pneumorph.report.comparison import comparison_table, read_comparison, write_comparison
 from pneumorph.report.curves import default_curves
@@ -21,10 +21,11 @@ from pneumorph.report.page import Item, Page, data_uri
 from pneumorph.report.tables import Table
 from pneumorph.solution import Solution, Status
 from pneumorph.solution.files import make_folder, write_atomically
-from pneumorph.studies.comparison import Comparison, ReportedCurve
+from pneumorph.studies.comparison import Comparison, Profile, ReportedCurve
 
 _log = logging.getLogger(__name__)
 _MOST_STATES = 40  # that pictures and the animation read
+_MOST_SHAPES = 9  # of a gait, side by side
 _FILM = 20_000  # triangles of the surface in the small pictures of the animation
 
 
@@ -39,6 +40,7 @@ def write_report(
     curves: Sequence[Curve] | None = None,
     reported: Sequence[ReportedCurve] = (),
     comparison: Sequence[Comparison] | None = None,
+    profiles: Sequence[Profile] = (),
     notes: Sequence[str] = (),
 ) -> Path:
     """Write report.html, figures/ and, with rows to compare, comparison.csv into a folder; return the page's path.
@@ -49,6 +51,7 @@ def write_report(
     curves:     figures of the history; by default measures over pressure, and pressure over volume.
     reported:   curves to compare with, drawn into the figures of the same columns; those that no figure has get one.
     comparison: rows for comparison.csv; by default those of the comparison.csv that is there.
+    profiles:   further figures at the head of the curves; their numbers are kept beside them as CSV.
     notes:      sentences at the head of 'What was asked'.
 
     Where pictures cannot be drawn the page says so and why; that is no error. Raises InputError without a folder or
@@ -91,6 +94,8 @@ def write_report(
     )
     keep = _Keeper(place / "figures")
     _add_figures(page, keep, solution, curves, reported)
+    _add_gait(page, keep, solution)
+    page.curves[:0] = [keep.svg(p.name, f"{p.title}.", figures.profile_figure(p), p.to_csv()) for p in profiles]
     try:
         _add_pictures(page, keep, solution, marked)
     except EngineError as error:
@@ -107,8 +112,11 @@ class _Keeper:
     def __init__(self, folder: Path):
         self.folder = folder
 
-    def svg(self, name: str, caption: str, content: bytes) -> Item:
-        """Keep a curve."""
+    def svg(self, name: str, caption: str, content: bytes, table: str = "") -> Item:
+        """Keep a curve, and a table of its numbers, if any, as CSV."""
+        if table:
+            numbers = table.encode("utf-8")
+            write_atomically(self.folder / f"{name}.csv", lambda path: path.write_bytes(numbers) and None)
         write_atomically(self.folder / f"{name}.svg", lambda path: path.write_bytes(content) and None)
         return Item(caption, data_uri(content, "svg"))
 
@@ -126,6 +134,9 @@ def _add_figures(
 ) -> None:
     history = solution.history
     chosen = list(curves) if curves is not None else default_curves(solution)
+    if curves is None and gait_figures.cycle_ends(solution):
+        own = gait_figures.gait_curves(solution)
+        chosen = own + [curve for curve in chosen if (curve.x, curve.y) not in [(one.x, one.y) for one in own]]
     for other in reported:
         if not any(other.x == curve.x and other.y in curve.y for curve in chosen):
             chosen.insert(0, Curve(history.column(other.y).label.capitalize(), other.x, (other.y,)))
@@ -147,6 +158,18 @@ def _add_figures(
     page.check_figures += [keep.svg(name, caption, draw(history)) for name, caption, draw in checks]
 
 
+def _add_gait(page: Page, keep: _Keeper, solution: Solution) -> None:
+    """Add table and schedule of a run that repeats a cycle."""
+    if not gait_figures.cycle_ends(solution):
+        return
+    page.cycles = gait_figures.gait_table(solution)
+    driven = {name for phase in solution.programme.phases for name in phase.targets}
+    cavities = [name for name, supply in solution.model.supplies.items() if name in driven and supply.sets_pressure]
+    if cavities:
+        caption = "The gauge pressure that each cavity is given through the programme."
+        page.curves.insert(0, keep.svg("schedule", caption, gait_figures.schedule_figure(solution.programme, cavities)))
+
+
 def _add_pictures(page: Page, keep: _Keeper, solution: Solution, marked: Sequence[int]) -> None:
     """Draw the mesh, the shapes and the animation; raises EngineError where that is impossible."""
     from pneumorph.report import animation, pictures
@@ -165,6 +188,8 @@ def _add_pictures(page: Page, keep: _Keeper, solution: Solution, marked: Sequenc
     last = states[-1]
     rest = "The thin grey outline is the body at rest."
     shown = [states[i] for i in np.unique(np.linspace(0, len(states) - 1, 4).round().astype(int))]
+    if gait_figures.cycle_ends(solution):  # a body that walks is back where it was after each cycle
+        shown = [solution.states[row] for row in marked[:_MOST_SHAPES]]
     page.shapes.append(
         keep.picture("shapes", f"Shapes on one scale. {rest}", pictures.shapes_picture(drawing, FIELDS[0], shown))
     )

@@ -80,6 +80,13 @@ class History:
         kind = self.column(key).kind
         return np.array([row[key] for row in self.rows], dtype=str if kind == TEXT else np.float64)
 
+    def smallest(self, prefix: str) -> float | None:
+        """Return the smallest number in all columns whose keys begin with a prefix; None where there is none."""
+        keys = [key for key in self.keys if key.startswith(prefix)]
+        values = np.concatenate([np.empty(0), *(self.values(key) for key in keys)])
+        values = values[np.isfinite(values)]
+        return float(values.min()) if len(values) else None
+
     @property
     def kept_energy(self) -> NDArray[np.float64]:
         """What the works of the run were turned into (rows,), mJ: stored, of motion, and lost."""
@@ -162,6 +169,15 @@ def columns(model: Model, programme: Programme, measures: Sequence[Measure]) -> 
             Column(f"contact_pressure:{name}", f"largest contact pressure of {name}", "stress"),
             Column(f"contact_distance:{name}", f"smallest distance of {name}", "length"),
         ]
+    axes = AXES[: model.mesh.dimension]
+    for contact in model.contacts:
+        if len(contact.faces) > 1:
+            parts = ((face, a) for face in contact.faces for a in axes)
+            result += [
+                Column(f"contact_force_{a}:{contact.name}:{face}", f"force {a} of {contact.name} on {face}", "force")
+                for face, a in parts
+            ]
+    result += [Column(f"body_force_{a}:{body}", f"force {a} on {body}", "force") for body in model.bodies for a in axes]
     for measure in measures:
         printed_unit(measure.kind)
         result.append(Column(measure.name, measure.name.replace("_", " "), measure.kind))
@@ -196,7 +212,7 @@ def columns(model: Model, programme: Programme, measures: Sequence[Measure]) -> 
 
 def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
     """Return the row of a state: key -> value in inside units."""
-    surfaces, energies = state.model.surfaces, state.energies
+    surfaces, energies, dimension = state.model.surfaces, state.energies, state.model.mesh.dimension
     result: dict[str, Any] = {"index": state.index, "phase": state.phase, "time": state.time, "clock": state.clock}
     for cavity, surface in surfaces.items():
         result[f"pressure:{cavity}"] = float(state.pressure[cavity])
@@ -210,11 +226,16 @@ def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
     result |= {f"value:{n}": float(state.values.get(n, 0.0)) for n in state.model.kinds if n not in surfaces}
     for contact in state.model.contacts:
         touch = state.touches.get(contact.name, NO_TOUCH)
-        for axis, force in zip(AXES, touch.force or (0.0,) * state.model.mesh.dimension, strict=False):
-            result[f"contact_force_{axis}:{contact.name}"] = force
+        result |= _vector(f"contact_force_{{}}:{contact.name}", touch.force, dimension)
         result[f"contact_area:{contact.name}"] = touch.area
         result[f"contact_pressure:{contact.name}"] = touch.pressure
         result[f"contact_distance:{contact.name}"] = touch.distance if math.isfinite(touch.distance) else math.nan
+        for face in contact.faces if len(contact.faces) > 1 else ():
+            result |= _vector(f"contact_force_{{}}:{contact.name}:{face}", touch.by_face.get(face, ()), dimension)
+    for body, names in state.model.bodies.items():
+        forces = [state.touches.get(name, NO_TOUCH).force or (0.0,) * dimension for name in names]
+        total = tuple(-sum(parts) for parts in zip(*forces, strict=True))
+        result |= _vector(f"body_force_{{}}:{body}", total, dimension)
     result |= {measure.name: float(measure(state)) for measure in measures}
     return result | {
         "strain_energy": energies.strain,
@@ -230,3 +251,8 @@ def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
         "unstable_modes": math.nan if state.unstable_modes is None else state.unstable_modes,
         "smallest_volume_ratio": state.smallest_volume_ratio,
     }
+
+
+def _vector(key: str, values: Sequence[float], dimension: int) -> dict[str, float]:
+    """Return one entry for each axis, zeros where there are no values; `key` has {} in the place of the axis."""
+    return {key.format(a): value for a, value in zip(AXES, values or (0.0,) * dimension, strict=False)}

@@ -44,12 +44,17 @@ class _Writer:
         return "\n".join(lines).rstrip() + "\n"
 
     def entry(self, key: str, item: Schema, value: Any, required: bool) -> list[str]:
-        """Return the lines of a key of the file: plain, a table, tables by domain, or an array of tables."""
+        """Return the lines of a key of the file: plain, a table, tables by domain or name, or an array of tables."""
         inner = self.variants(item.get("items", {}))
         if inner:
             return self.tables(f"[[{key}]]", item["description"], inner, value or [])
         if item.get("anyOf") and (inner := self.variants(item["anyOf"][0])):
             return self.domains(key, item["description"], inner, value)
+        inner = self.variants(item.get("additionalProperties", {}))
+        if inner and value:
+            return self.domains(key, item["description"], inner, value)
+        if inner:
+            return self.tables(f"[{key}.{self.words.get(key, 'name')}]", item["description"], inner, [])
         inner = self.variants(item)
         if inner:
             return self.tables(f"[{key}]", item["description"], inner, [] if value is None else [value])
@@ -78,28 +83,34 @@ class _Writer:
         left = list(variants)
         for value in values:
             variant = _fitting(variants, value)
-            lines += [header, *self.body(variant, value, whole=variant in left), ""]
+            lines += [header, *self.body(variant, value, whole=variant in left, name=header.strip("[]")), ""]
             left = [v for v in left if v is not variant]
         for variant in [] if values and header == "[actuator]" else left:
             if len(variants) > 1:
                 lines += _sentence(variant["description"])
-            lines += [f"# {header}", *self.body(variant, None, whole=True), ""]
+            lines += [f"# {header}", *self.body(variant, None, whole=True, name=header.strip("[]")), ""]
         return lines[:-1]
 
-    def body(self, variant: Schema, value: Mapping[str, Any] | None, whole: bool) -> list[str]:
-        """Return the keys of one table; without a value all are comments, without `whole` only what is said stands."""
-        lines = []
+    def body(self, variant: Schema, value: Mapping[str, Any] | None, whole: bool, name: str = "") -> list[str]:
+        """Return the keys of one table; without a value all are comments, without `whole` only what is said stands.
+
+        name: of the table; its arrays of tables, which have to follow all its keys, begin with it.
+        """
+        lines, tail = [], []
         required = variant.get("required", ())
         dimensions = value is not None and "template" in value
         properties: Mapping[str, Schema] = variant["properties"]
         for key in properties if dimensions else sorted(properties, key=lambda key: key not in required):
             item, said = properties[key], (value or {}).get(key)
-            if said not in (None, [], ()) and (whole or key in required or said != item.get("default")):
+            inner = self.variants(item.get("items", {}))
+            if inner and whole:
+                tail += self.tables(f"[[{name}.{key}]]", item["description"], inner, said or [])
+            elif said not in (None, [], ()) and (whole or key in required or said != item.get("default")):
                 keep = dimensions or key in required
                 lines += self.line(key, item, said, keep) if whole else [f"{toml_key(key)} = {toml_value(said)}"]
             elif whole:
                 lines += self.line(key, item, None, False)
-        return lines
+        return lines + tail
 
     def line(self, key: str, item: Schema, value: Any, keep: bool) -> list[str]:
         """Return `key = value  # meaning`, or the same as a comment if there is no value but the default."""

@@ -46,6 +46,39 @@ class ReportedCurve:
     marks: bool = False
 
 
+@dataclass(frozen=True, eq=False)
+class Series:
+    """One curve of a profile: label, x (n,), y (n,); marks: points instead of a line."""
+
+    label: str
+    x: NDArray
+    y: NDArray
+    marks: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """A figure that is not over a column of the history: computed and reported curves, in the units of its labels.
+
+    name: of its files; x, y: labels of the axes with their units.
+    """
+
+    name: str
+    title: str
+    x: str
+    y: str
+    series: tuple[Series, ...]
+
+    def to_csv(self) -> str:
+        """Return a line for each point of each curve."""
+        file = StringIO()
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["curve", self.x, self.y])
+        for item in self.series:
+            writer.writerows([item.label, f"{x:.6g}", f"{y:.6g}"] for x, y in zip(item.x, item.y, strict=True))
+        return file.getvalue()
+
+
 def to_csv(rows: Iterable[Comparison]) -> str:
     """Return comparison.csv: a header and a line for each row, empty where there is no number."""
     file = StringIO()

@@ -13,6 +13,7 @@ from pneumorph.studies.schema import (
     TEMPLATES,
     CavitySection,
     ClampSection,
+    GravitySection,
     LibraryMaterial,
     PhaseSection,
     PrescribedSection,
@@ -20,15 +21,17 @@ from pneumorph.studies.schema import (
     StudyFile,
     SymmetrySection,
 )
-from pneumorph.studies.section import write
+from pneumorph.studies.section import built, write
 
 GRAVITY = "gravity"
 
 # the silicones of the published actuators, by domain
 _MATERIALS = {
+    "crawler-2d": {"body": "ecoflex-pneunet", "base": "pdms-pneunet"},
     "finger": {"body": "lsr-finger"},
     "hexagonal-prism": {"body": "shore-a45-platinum"},
     "pneunet": {"body": "ecoflex-pneunet", "base": "pdms-pneunet"},
+    "soft-limb": {"body": "dragon-skin-30-wheel", "base": "smooth-sil-950"},
     "skinned-tube": {"tube": "ecoflex-00-30-tube", "skin": "hei-cast-8400-skin", "cap": "auxetic-end-cap"},
 }
 
@@ -37,7 +40,9 @@ def actuator_of(file: StudyFile) -> Actuator:
     """Return the actuator; raises GeometryError for dimensions that do not fit, InputErrors for a file."""
     if isinstance(file.actuator, ImportedSection):
         return imported_body(file.actuator, file.mesh)
-    dimensions = {name: getattr(file.actuator, name) for name in type(file.actuator).model_fields if name != "template"}
+    dimensions = {
+        name: built(getattr(file.actuator, name)) for name in type(file.actuator).model_fields if name != "template"
+    }
     return TEMPLATES[file.actuator.template](**dimensions)
 
 
@@ -71,6 +76,8 @@ def completed(file: StudyFile, actuator: Actuator) -> StudyFile:
     _check_faces(known, [(f"support[{i + 1}]", item.face) for i, item in enumerate(support)])
     _check_faces(known, [(f"load[{i + 1}]", item.face) for i, item in enumerate(file.load)])
     known = tuple(dict.fromkeys((*known, *(face for name in actuator.cavities for face in _walls(actuator, name)))))
+    touching = [(f"contact[{i + 1}]", item) for i, item in enumerate(file.contact)]
+    _check_faces(known, [(owner, face) for owner, item in touching for face in (*item.faces, *(item.against or ()))])
     _check_faces(known, [(f"cavity '{name}'", face) for name, faces, planes in bounds for face in (*faces, *planes)])
     _check_once(
         [(face, f"cavity '{name}'") for name, faces, _ in bounds for face in faces],
@@ -83,10 +90,19 @@ def completed(file: StudyFile, actuator: Actuator) -> StudyFile:
     return file.model_copy(
         update={
             "material": _materials(file, actuator),
+            "gravity": _gravity(file, actuator),
             "support": support,
             "cavity": tuple(cavity),
             "phase": _phases(file),
         }
+    )
+
+
+def _gravity(file: StudyFile, actuator: Actuator) -> GravitySection | None:
+    if file.gravity is None or file.gravity.direction is not None:
+        return file.gravity
+    return file.gravity.model_copy(
+        update={"direction": (0.0, 0.0, -1.0) if actuator.space == "3d" else (0.0, -1.0, 0.0)}
     )
 
 
@@ -139,7 +155,7 @@ def _walls(actuator: Actuator, cavity: str) -> tuple[str, ...]:
 
 def _needs_cavity(file: StudyFile) -> bool:
     """Return whether the study has cavities, or drives what is neither a load nor a displacement."""
-    names = {GRAVITY, *(item.name for item in (*file.load, *(file.support or ())) if hasattr(item, "name"))}
+    names = {GRAVITY, *file.body, *(item.name for item in (*file.load, *(file.support or ())) if hasattr(item, "name"))}
     return bool(file.cavity) or any(name not in names for phase in file.phase for name in phase.targets)
 
 

@@ -24,7 +24,7 @@ def _set_alone(value: Any) -> Any:
     return {"set": value} if isinstance(value, str) else value
 
 
-def _located(value: object, info: ValidationInfo) -> object:
+def located(value: object, info: ValidationInfo) -> object:
     """Return file names of a study file as seen from everywhere: they are relative to its folder."""
     names = [value] if isinstance(value, str) else value
     if not isinstance(names, list | tuple) or not names or not all(isinstance(n, str) and n.strip() for n in names):
@@ -65,7 +65,7 @@ class ImportedSection(Section):
     feature_angle: patches of the surface and rims end where the surface turns by more than this.
     """
 
-    file: Annotated[str | Annotated[tuple[str, ...], Strict(False)], BeforeValidator(_located)]
+    file: Annotated[str | Annotated[tuple[str, ...], Strict(False)], BeforeValidator(located)]
     unit: Literal[tuple(UNITS)] | None = None  # type: ignore[valid-type]
     faces: dict[str, Annotated[SelectorSection, BeforeValidator(_set_alone)]] = Field(default_factory=dict)
     caps: dict[str, Place] = Field(default_factory=dict)

@@ -9,6 +9,7 @@ from typing import Any
 from pneumorph.errors import StorageError
 from pneumorph.materials import library
 from pneumorph.studies.measuring import names as measure_names
+from pneumorph.studies.measuring import names_by_domain
 from pneumorph.studies.schema import LibraryMaterial, StudyFile
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -23,7 +24,8 @@ def study_schema() -> dict[str, Any]:
     out. What depends on the actuator (face and domain names, whether dimensions fit) is checked by `load_study` alone.
     """
     schema = StudyFile.model_json_schema(mode="validation")
-    schema["properties"]["measures"]["items"] = {"enum": list(measure_names())}
+    by_domain = {"type": "string", "pattern": f"^({'|'.join(names_by_domain())}):.+$"}
+    schema["properties"]["measures"]["items"] = {"anyOf": [{"enum": list(measure_names())}, by_domain]}
     # upper and lower case are alike, so the names are offered, not prescribed
     name = schema["$defs"][LibraryMaterial.__name__]["properties"]["name"]
     name |= {"anyOf": [{"enum": list(library.names())}, {"type": "string"}]}

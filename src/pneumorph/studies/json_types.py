@@ -43,10 +43,23 @@ def size_schema() -> JsonSchema:
     return {"anyOf": [{"enum": ["automatic", "coarse"]}, quantity_schema("length")]}
 
 
+def place_schema() -> JsonSchema:
+    """Return the schema of a point: three lengths, two in plane models."""
+    lengths = [quantity_schema("length")] * 3
+    return {"type": "array", "prefixItems": lengths, "minItems": 2, "maxItems": 3}
+
+
 def direction_schema() -> JsonSchema:
     """Return the schema of a direction: an axis with its sign, or three numbers."""
     numbers = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
     return {"anyOf": [{"type": "string", "pattern": _AXIS, "examples": ["-z", "x"]}, numbers]}
+
+
+def runs_schema(names: Sequence[str]) -> JsonSchema:
+    """Return the schema of a list of pairs, a number and one of some names."""
+    pair = [{"type": "integer", "minimum": 1}, {"enum": list(names)}]
+    item = {"type": "array", "prefixItems": pair, "minItems": 2, "maxItems": 2}
+    return {"type": "array", "items": item, "examples": [[[6, names[0]], [6, names[1]]]]}
 
 
 class AloneOrByName:

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from pneumorph.errors import NameNotFoundError, StudyError, unknown_name
-from pneumorph.geometry import Actuator, BendingSkin, Finger, PneuNet
+from pneumorph.geometry import Actuator, BendingSkin, Finger, PneuNet, SoftLimb
 from pneumorph.measures import (
+    CentreOfMass,
     ChordAngle,
     Curvature,
     CurvatureResidual,
     Diameter,
     LargestStress,
+    LineLength,
     MeanStress,
     ReactionForce,
     ReactionMoment,
     TipRotation,
+    TurnRate,
 )
 from pneumorph.solution import Measure
 
@@ -28,45 +32,88 @@ _MEASURES: dict[str, tuple[tuple[str, ...], Callable[[Vector | None], Measure]]]
     "chord_angle": (_ENDS, lambda axis: ChordAngle(axis=axis)),
     "curvature": (_ENDS, lambda axis: Curvature(axis=axis)),
     "curvature_residual": (_ENDS, lambda axis: CurvatureResidual(Curvature(axis=axis))),
+    "turn_rate": (_ENDS, lambda axis: TurnRate(axis=axis)),
+    "line_length": (_ENDS, lambda axis: LineLength()),
     "diameter": ((*_ENDS, "outer"), lambda axis: Diameter()),
     "largest_diameter": ((*_ENDS, "outer"), lambda axis: Diameter(station=None, name="largest_diameter")),
     "reaction_force": (("clamp",), lambda axis: ReactionForce()),
     "reaction_moment": (("clamp",), lambda axis: ReactionMoment()),
+    "centre_of_mass_x": ((), lambda axis: CentreOfMass("x")),
+    "centre_of_mass_y": ((), lambda axis: CentreOfMass("y")),
+    "centre_of_mass_z": ((), lambda axis: CentreOfMass("z")),
     "peak_von_mises": ((), lambda axis: LargestStress("von_mises")),
     "mean_von_mises": ((), lambda axis: MeanStress("von_mises", name="mean_von_mises")),
+    "mean_equivalent_strain": ((), lambda axis: MeanStress("equivalent_strain", name="mean_equivalent_strain")),
     "peak_principal_stress": (
         (),
         lambda axis: LargestStress("largest_principal_stress", name="peak_principal_stress"),
     ),
     "peak_stretch": ((), lambda axis: LargestStress("largest_stretch", name="peak_stretch")),
 }
+# of one material domain by "name:domain"
+_BY_DOMAIN: dict[str, Callable[[str, str], Measure]] = {
+    "peak_von_mises": lambda domain, name: LargestStress("von_mises", domain, name),
+    "mean_von_mises": lambda domain, name: MeanStress("von_mises", domain, name),
+    "peak_principal_stress": lambda domain, name: LargestStress("largest_principal_stress", domain, name),
+    "peak_stretch": lambda domain, name: LargestStress("largest_stretch", domain, name),
+}
+# of one template, by name
+_OF_TEMPLATE: dict[str, tuple[type[Actuator], Callable[[Any, Vector], Measure]]] = {
+    "edge_curvature": (
+        BendingSkin,
+        lambda skin, axis: Curvature(line=skin.outer_edge, axis=axis, sections=_EDGE_POINTS, name="edge_curvature"),
+    ),
+}
+_EDGE_POINTS = 41
 _DEFAULT = ("tip_rotation", "chord_angle")
 # templates that bend one way: angles about this axis have a sign and count full turns
-_AXES: dict[type[Actuator], Vector] = {Finger: (0.0, 1.0, 0.0), PneuNet: (0.0, 1.0, 0.0), BendingSkin: (0.0, -1.0, 0.0)}
+_AXES: dict[type[Actuator], Vector] = {
+    Finger: (0.0, 1.0, 0.0),
+    PneuNet: (0.0, 1.0, 0.0),
+    BendingSkin: (0.0, -1.0, 0.0),
+    SoftLimb: (0.0, -1.0, 0.0),
+}
 
 
 def measures_of(names: Sequence[str] | None, actuator: Actuator) -> tuple[Measure, ...]:
     """Return measures by name; by default the angles, if the actuator has a clamp and a tip.
 
-    Raises NameNotFoundError for an unknown name, StudyError for one whose faces are missing or that is given twice.
+    Stress and stretch of one material domain are called "peak_von_mises:skin" and so on.
+    "edge_curvature" is that of the outer edge line of a skinned tube.
+    Raises NameNotFoundError for an unknown name or domain, StudyError for one whose faces are missing or that is given
+    twice.
     """
     faces = actuator.face_names
     if names is None:
         names = _DEFAULT if set(_ENDS) <= set(faces) else ()
     measures = []
     for name in names:
+        if names.count(name) > 1:
+            raise StudyError(f"measures: '{name}' is given {names.count(name)} times")
+        quantity, colon, domain = name.partition(":")
+        if colon and quantity in _BY_DOMAIN:
+            if domain not in actuator.domains:
+                raise NameNotFoundError(f"measures: '{name}': " + unknown_name("domain", domain, actuator.domains))
+            measures.append(_BY_DOMAIN[quantity](domain, name))
+            continue
+        if name in _OF_TEMPLATE and isinstance(actuator, _OF_TEMPLATE[name][0]):
+            measures.append(_OF_TEMPLATE[name][1](actuator, _AXES[type(actuator)]))
+            continue
         if name not in _MEASURES:
             raise NameNotFoundError("measures: " + unknown_name("measure", name, _MEASURES))
         needed, make = _MEASURES[name]
         missing = [face for face in needed if face not in faces]
         if missing:
             raise StudyError(f"measures: '{name}' needs the face '{missing[0]}', the actuator has {', '.join(faces)}")
-        if names.count(name) > 1:
-            raise StudyError(f"measures: '{name}' is given {names.count(name)} times")
         measures.append(make(_AXES.get(type(actuator))))
     return tuple(measures)
 
 
 def names() -> tuple[str, ...]:
     """Return the names of all measures that a study file can ask for, in the order of the documentation."""
-    return tuple(_MEASURES)
+    return (*_MEASURES, *_OF_TEMPLATE)
+
+
+def names_by_domain() -> tuple[str, ...]:
+    """Return the names of those that can be asked for of one material domain, as "peak_von_mises:skin"."""
+    return tuple(_BY_DOMAIN)

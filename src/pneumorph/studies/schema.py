@@ -21,7 +21,17 @@ from pydantic import (
 )
 
 from pneumorph.errors import UnitError
-from pneumorph.geometry import Actuator, BendingSkin, Finger, HexagonalPrism, PneuNet, ThickSphere, ThickTube
+from pneumorph.geometry import (
+    Actuator,
+    BendingSkin,
+    Finger,
+    HexagonalPrism,
+    PlaneCrawler,
+    PneuNet,
+    SoftLimb,
+    ThickSphere,
+    ThickTube,
+)
 from pneumorph.materials import LAWS, Prony
 from pneumorph.mechanics import Settings
 from pneumorph.studies.direction import Direction
@@ -29,13 +39,16 @@ from pneumorph.studies.importing import ImportedSection
 from pneumorph.studies.json_types import AloneOrByName, any_quantity_schema, size_schema
 from pneumorph.studies.section import IMPORTED, LIBRARY, Section, quantity, section_of, write
 from pneumorph.studies.supplies import SUPPLY_SECTIONS, AtmosphereSection, SupplySection, TubeSection
+from pneumorph.studies.touching import BODY_SECTIONS, BodySection, ContactSection
 from pneumorph.units import parse
 
 TEMPLATES: dict[str, type[Actuator]] = {
+    "crawler-2d": PlaneCrawler,
     "finger": Finger,
     "hexagonal-prism": HexagonalPrism,
     "pneunet": PneuNet,
     "skinned-tube": BendingSkin,
+    "soft-limb": SoftLimb,
     "thick-sphere": ThickSphere,
     "thick-tube": ThickTube,
 }
@@ -118,6 +131,7 @@ class MeshSection(Section):
     grading: how fast the size may change, above 0 (slowly) to 1; automatic 0.8.
     detail: how much short edges refine their surroundings, 1 for a cell no larger than the edge; automatic 1, coarse
         0.2.
+    homogenised: a closed layer with the law of its lattice in place of a skin; only for skinned-tube.
     """
 
     size: Annotated[
@@ -126,16 +140,17 @@ class MeshSection(Section):
     wall_size: quantity("length") | None = None  # type: ignore[valid-type]
     grading: float | None = None
     detail: float | None = None
+    homogenised: bool = False
 
 
 class GravitySection(Section):
     """Weight; ramped up in a phase of its own, before the others, unless a phase names it.
 
-    direction: which way things fall, an axis with its sign or three numbers.
+    direction: which way things fall, an axis with its sign or three numbers; left out, -z, in plane models -y.
     acceleration: how strong it is.
     """
 
-    direction: Direction = (0.0, 0.0, -1.0)
+    direction: Direction | None = None
     acceleration: quantity("acceleration") = 9810.0  # type: ignore[valid-type]
 
 
@@ -257,6 +272,17 @@ class PhaseSection(Section):
     inertia: Literal["transient", "moderate", "quasi-static"] | None = None
 
 
+class CycleSection(Section):
+    """A gait: phases at the end of the file that repeat.
+
+    phases: names of the phases of one cycle, the last ones of the file in their order.
+    repeat: how often they are run, in all; 1 or more.
+    """
+
+    phases: Names
+    repeat: int = 1
+
+
 SupportSection: Any = Annotated[
     ClampSection | RollerSection | SymmetrySection | PrescribedSection, Field(discriminator="type")
 ]
@@ -268,7 +294,8 @@ class StudyFile(Section):
     """A study of a soft pneumatic actuator, its sections in the order in which they are written out.
 
     title: title of the report; left out, the name of the file.
-    measures: what is measured in every state; left out, both angles where there are a clamp and a tip.
+    measures: what is measured in every state, stress and stretch also of one domain, as "peak_von_mises:skin"; left
+        out, both angles where there are a clamp and a tip.
     actuator: the template and its dimensions; what is left out has the template's value.
     material: one material for all domains, or a table for each domain; left out, that of the published actuator.
     mesh: how fine the mesh is.
@@ -278,7 +305,10 @@ class StudyFile(Section):
     cavity: cavities and their supplies; left out, every cavity of the template by pressure.
     tube: tubes between cavities that are filled with gas.
     atmosphere: pressure and temperature outside, and the gas.
+    body: rigid bodies by name, which contacts refer to.
+    contact: what may touch what, with friction or without; left out, surfaces pass through each other.
     phase: what is driven how far, one ramp after the other.
+    cycle: phases that repeat; left out, each is run once.
     solver: how the solver steps and when it is content.
     """
 
@@ -295,12 +325,15 @@ class StudyFile(Section):
     cavity: Annotated[tuple[CavitySection, ...], Strict(False)] | None = None
     tube: Annotated[tuple[TubeSection, ...], Strict(False)] = ()
     atmosphere: AtmosphereSection = Field(default_factory=AtmosphereSection)
+    body: dict[str, BodySection] = Field(default_factory=dict)
+    contact: Annotated[tuple[ContactSection, ...], Strict(False)] = ()
     phase: Annotated[tuple[PhaseSection, ...], Strict(False)] = ()
+    cycle: CycleSection | None = None
     solver: SolverSection = Field(default_factory=SolverSection)
 
 
 # names of union members that pydantic adds to the path of an error
 TAGS = {
     *TEMPLATES, IMPORTED, *LAWS, ALL_DOMAINS, LIBRARY, "clamp", "roller", "symmetry", "prescribed", "force", "traction",
-    *SUPPLY_SECTIONS,
+    *SUPPLY_SECTIONS, *BODY_SECTIONS,
 }  # fmt: skip

@@ -25,7 +25,7 @@ from pydantic_core import CoreSchema
 
 from pneumorph.errors import InputError, StudyError, UnitError, shortened, unknown_name
 from pneumorph.studies.describing import meanings, summary
-from pneumorph.studies.json_types import quantity_schema, without_null
+from pneumorph.studies.json_types import quantity_schema, runs_schema, without_null
 from pneumorph.units import parse, show
 
 # tag of the material section that has no law of its own
@@ -97,7 +97,8 @@ def write(value: float, kind: str) -> str:
 def section_of(owner: type, name: str | None = None, **tag: str) -> type[Section]:
     """Return the section whose keys are the fields of a dataclass, typed by the unit `kind` in their metadata.
 
-    A field with `many` in its metadata is a list, one that holds a dataclass is a table of its own. A `tag` such as
+    A field with `many` in its metadata is a list, one that holds a dataclass is a table of its own, one that holds a
+    tuple of dataclasses an array of tables. A `tag` such as
     template="finger" adds a key with this one value, which tells the sections of a union apart.
     """
     keys: dict[str, Any] = {key: (Literal[value], ...) for key, value in tag.items()}
@@ -115,14 +116,45 @@ def _type_of(item: Field[Any], hint: Any) -> Any:
     if item.metadata.get("many"):
         one: Any = float if kind == "number" else quantity(str(kind))
         return Annotated[tuple[one, ...], Strict(False)]
+    if kind == "runs":
+        return runs(item.metadata["names"]) | None
     if kind is None:
         parts = get_args(hint)
+        if get_origin(hint) is tuple and is_dataclass(parts[0]) and isinstance(parts[0], type):
+            return Annotated[tuple[section_of(parts[0]), ...], Strict(False)]  # type: ignore[misc]
         sections = (section_of(part) if is_dataclass(part) and isinstance(part, type) else part for part in parts)
         return Union[tuple(sections)] if any(map(is_dataclass, parts)) else hint  # noqa: UP007
     if kind in ("count", "number"):
         return hint
     optional = get_origin(hint) in (Union, UnionType) and type(None) in get_args(hint)
     return quantity(kind) | None if optional else quantity(kind)
+
+
+@cache
+def runs(names: tuple[str, ...]) -> Any:
+    """Return the type of a list of pairs, a number and one of some names: [[6, "re-entrant"], [6, "honeycomb"]]."""
+
+    def read(value: object) -> tuple[tuple[int, str], ...]:
+        pairs: Any = value if isinstance(value, list | tuple) else [None]
+        for pair in pairs:
+            known = isinstance(pair, list | tuple) and len(pair) == 2 and type(pair[0]) is int
+            if not known or not isinstance(pair[1], str):
+                example = f'[[6, "{names[0]}"], [6, "{names[-1]}"]]'
+                raise StudyError(f"{shortened(repr(value))}: expected pairs of a whole number and a name, as {example}")
+            if pair[1] not in names:
+                raise StudyError(unknown_name("kind", pair[1], names))
+        return tuple((pair[0], pair[1]) for pair in pairs)
+
+    return Annotated[tuple[tuple[int, str], ...], BeforeValidator(read), WithJsonSchema(runs_schema(names))]
+
+
+def built(value: Any) -> Any:
+    """Return what a value of a section stands for: for a section of a dataclass an object of it, so in a tuple too."""
+    if isinstance(value, tuple):
+        return tuple(built(item) for item in value)
+    if isinstance(value, Section) and value._owner is not None:
+        return value._owner(**{name: built(getattr(value, name)) for name in type(value).model_fields})
+    return value
 
 
 def refusal(error: ValidationError, tags: Iterable[str]) -> InputError:
@@ -137,8 +169,10 @@ def refusal(error: ValidationError, tags: Iterable[str]) -> InputError:
 
 def _line(item: Any, hidden: set[str]) -> str:
     # names that the user gave may be those of tags
-    path = zip(item["loc"], ("", *item["loc"]), strict=False)
-    place = _path([part for part, before in path if part not in hidden or before in ("faces", "caps")])
+    path = list(zip(item["loc"], ("", *item["loc"]), strict=False))
+    bodies = item["loc"][:1] == ("body",)
+    given = [before in ("faces", "caps") or (bodies and n == 1) for n, (_, before) in enumerate(path)]
+    place = _path([part for (part, _), own in zip(path, given, strict=True) if own or part not in hidden])
     kind, context, value = item["type"], item.get("ctx", {}), item.get("input")
     if kind == "value_error":  # raised by ourselves: the message is complete
         text = str(context["error"])

@@ -20,10 +20,15 @@ from pneumorph.studies.study import Study, study_from
 _SILICONE = {"name": "shore-a45-platinum"}
 _CHOICES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
+        "crawler-2d": {
+            "support": [{"type": "clamp", "face": "front_foot"}],  # on its own it would be free to move
+            "targets": {"PN1": "5 kPa"},
+        },
         "finger": {"targets": {"cavity": "40 kPa"}},
         "hexagonal-prism": {"targets": {"cavity_1": "40 kPa", "cavity_2": "40 kPa"}},
         "pneunet": {"targets": {"cavity": "4 kPa"}},
         "skinned-tube": {"actuator": {"half": True}, "targets": {"cavity": "10 kPa"}},
+        "soft-limb": {"actuator": {"half": True}, "targets": {"cavity": "10 kPa"}},
         # a whole sphere has no face to hold it by
         "thick-sphere": {"actuator": {"octant": True}, "material": _SILICONE, "targets": {"cavity": "40 kPa"}},
         "thick-tube": {"actuator": {"quarter": True}, "material": _SILICONE, "targets": {"cavity": "40 kPa"}},
@@ -65,8 +70,7 @@ def starter(template: str) -> Study:
         "mesh": {"size": "coarse"},
         "phase": [{"name": "inflate", "targets": dict(choice["targets"])}],
     }
-    if "material" in choice:
-        table["material"] = dict(choice["material"])
+    table |= {key: choice[key] for key in ("material", "support") if key in choice}
     return study_from(table, template)
 
 
@@ -80,7 +84,7 @@ def starter_text(template: str) -> str:
     return commented_study(
         study.resolved(),
         (f"{starters()[template]}.", f"{names[0].upper()}{names[1:]}."),
-        {"face": free, "cavity": actuator.cavities[0]},
+        {"face": free, "cavity": actuator.cavities[0], "direction": "-z" if actuator.space == "3d" else "-y"},
     )
 
 

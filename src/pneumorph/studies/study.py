@@ -19,9 +19,11 @@ from pneumorph.mechanics import (
     Atmosphere,
     Cavity,
     Clamp,
+    Contact,
     Force,
     Gravity,
     Model,
+    Motion,
     Phase,
     Prescribed,
     Programme,
@@ -35,11 +37,14 @@ from pneumorph.mechanics.loads import Load
 from pneumorph.mechanics.supplies.checks import check_driven, check_phases, check_tubes
 from pneumorph.mechanics.supports import Support
 from pneumorph.mesh import Imported, Mesh, generate, inspect
+from pneumorph.studies.cycles import cycle_ends, repeated
 from pneumorph.studies.defaults import GRAVITY, actuator_of, completed
+from pneumorph.studies.homogenised import check_homogenised, homogenised
 from pneumorph.studies.measuring import Measure, measures_of
 from pneumorph.studies.schema import TAGS, LibraryMaterial, PhaseSection, StudyFile
 from pneumorph.studies.section import refusal
 from pneumorph.studies.supplies import supply_of, tube_of
+from pneumorph.studies.touching import bodies_of, contacts_of
 from pneumorph.studies.writing import to_toml
 from pneumorph.units import parse, show
 
@@ -71,6 +76,7 @@ class Study:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "file", completed(self.file, self.actuator))
+        check_homogenised(self.actuator, self.file.mesh)
         _ = self.materials, self.supports, self.loads, self.cavities, self.measures, self.settings
         supplies = {cavity.name: cavity.supply for cavity in self.cavities}
         check_tubes(self.tubes, supplies)
@@ -109,10 +115,14 @@ class Study:
         """Forces, tractions and gravity."""
         loads: list[Load] = [_LOADS[item.type](**_fields(item, "type")) for item in self.file.load]
         if self.file.gravity is not None:
-            loads.append(Gravity(self.file.gravity.direction, GRAVITY))
+            loads.append(Gravity(self.file.gravity.direction or (), GRAVITY))
         for load in loads:
             if len(load.direction) != 3 or not any(load.direction):
                 raise StudyError(f"load '{load.name}': direction = {load.direction}: expected 3 numbers, not all zero")
+            if self.actuator.space != "3d" and load.direction[2]:
+                raise StudyError(f"load '{load.name}': direction = {load.direction} leaves the plane of the model")
+        if self.actuator.space != "3d":
+            loads = [replace(load, direction=load.direction[:2]) for load in loads]
         return tuple(loads)
 
     @cached_property
@@ -129,6 +139,11 @@ class Study:
         return tuple(tube_of(item, number) for number, item in enumerate(self.file.tube, 1))
 
     @cached_property
+    def contacts(self) -> tuple[Contact, ...]:
+        """What may touch what."""
+        return contacts_of(self.file.contact, bodies_of(self.file.body, 3 if self.actuator.space == "3d" else 2))
+
+    @cached_property
     def atmosphere(self) -> Atmosphere:
         """What is outside."""
         return Atmosphere(**_fields(self.file.atmosphere))
@@ -139,20 +154,30 @@ class Study:
         kinds: dict[str, str] = {}
         moved = [support for support in self.supports if isinstance(support, Prescribed)]
         pairs = [(item.name, item.supply.kind) for item in self.cavities if item.supply.kind is not None]
-        for name, kind in [*pairs, *((item.name, item.kind) for item in (*self.loads, *moved))]:
+        motions = {contact.motion.name: Motion.kind for contact in self.contacts if contact.motion}
+        for name, kind in [*pairs, *((item.name, item.kind) for item in (*self.loads, *moved)), *motions.items()]:
             if name in kinds:
-                raise InputError(f"the name '{name}' is given to more than one cavity, load or displacement")
+                raise InputError(f"the name '{name}' is given to more than one cavity, load, displacement or body")
             kinds[name] = kind
+        names = [contact.name for contact in self.contacts]
+        for name in names:
+            if names.count(name) > 1 or name in kinds:
+                raise InputError(f"contact '{name}': the name is taken; give the contact another one")
         return kinds
 
     @cached_property
     def programme(self) -> Programme:
         """The phases with values in inside units."""
         phases, values = [], dict.fromkeys(self.kinds, 0.0)
-        for section in self.file.phase:
+        for section in repeated(self.file.phase, self.file.cycle):
             phases.append(_phase(section, self.kinds, values))
             values |= phases[-1].targets
         return Programme(tuple(phases))
+
+    @property
+    def cycle_ends(self) -> tuple[int, ...]:
+        """Times, in phases, at which the first cycle starts and each ends; () where nothing repeats."""
+        return cycle_ends(self.file.phase, self.file.cycle)
 
     @cached_property
     def settings(self) -> Settings:
@@ -188,9 +213,13 @@ class Study:
         for domain, material in self.materials.items():
             for instability in instabilities(material, *USUAL_RANGE):
                 _log.warning("material of '%s': %s", domain, instability)
+        if self.file.mesh.homogenised:
+            mesh, materials = homogenised(self.actuator, self.file.mesh, self.materials)
+        else:
+            mesh, materials = self.mesh(), self.materials
         model = Model(
-            self.mesh(), self.materials, self.supports, self.loads, self.cavities,
-            tubes=self.tubes, atmosphere=self.atmosphere,
+            mesh, materials, self.supports, self.loads, self.cavities,
+            tubes=self.tubes, atmosphere=self.atmosphere, contacts=self.contacts,
         )  # fmt: skip
         return Problem(model, self.programme, self.measures, self.settings)
 
@@ -198,7 +227,7 @@ class Study:
         """Return the study as plain data with every default written out, quantities as text with units."""
         data = self.file.model_dump(exclude_none=True)
         data["phase"] = [{key: value for key, value in item.items() if value != {}} for item in data["phase"]]
-        for key in ("load", "tube"):
+        for key in ("load", "tube", "body", "contact"):
             if not data[key]:
                 del data[key]
         return data | {"title": self.title, "measures": [measure.name for measure in self.measures]}

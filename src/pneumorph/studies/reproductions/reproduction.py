@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pneumorph.errors import NameNotFoundError, unknown_name
 from pneumorph.solution import Solution
-from pneumorph.studies.comparison import Comparison, ReportedCurve
+from pneumorph.studies.comparison import Comparison, Profile, ReportedCurve
 from pneumorph.studies.study import Study
 
 
@@ -18,6 +18,7 @@ class Reproduction:
     study:   (quick) -> what is solved; a quick one is coarser and stops earlier.
     compare: (solution, study) -> rows of reported and computed numbers; what was not reached has no computed one.
     curves:  (study) -> reported curves for the figures.
+    profiles: (solution, study) -> further figures, such as stress along a line.
     notes:   sentences on what was assumed and what was left out.
     """
 
@@ -28,6 +29,7 @@ class Reproduction:
     compare: Callable[[Solution, Study], tuple[Comparison, ...]]
     curves: Callable[[Study], tuple[ReportedCurve, ...]]
     notes: tuple[str, ...] = ()
+    profiles: Callable[[Solution, Study], tuple[Profile, ...]] = lambda solution, study: ()
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,17 @@ class SystemInParts:
     parts: Mapping[str, str]
 
 
+@dataclass(frozen=True)
+class SystemBySweep:
+    """A published system whose trends are told from a sweep of many designs."""
+
+    name: str
+    title: str
+    source: str
+
+
 _KNOWN: dict[str, Reproduction] = {}
+_BY_SWEEP: dict[str, SystemBySweep] = {}
 _IN_PARTS: dict[str, SystemInParts] = {}
 
 
@@ -56,15 +68,23 @@ def register_parts(item: SystemInParts) -> SystemInParts:
     return item
 
 
+def register_sweep(item: SystemBySweep) -> SystemBySweep:
+    """Make a system by a sweep known by its name."""
+    _BY_SWEEP[item.name] = item
+    return item
+
+
 def names() -> tuple[str, ...]:
-    """Return the names of all reproductions, sorted, also of those in parts."""
-    return tuple(sorted({*_KNOWN, *_IN_PARTS}))
+    """Return the names of all reproductions, sorted, also of those in parts and by sweeps."""
+    return tuple(sorted({*_KNOWN, *_IN_PARTS, *_BY_SWEEP}))
 
 
-def reproduction(name: str) -> Reproduction | SystemInParts:
+def reproduction(name: str) -> Reproduction | SystemInParts | SystemBySweep:
     """Return a reproduction by name; raises NameNotFoundError with the nearest name."""
     if name in _IN_PARTS:
         return _IN_PARTS[name]
+    if name in _BY_SWEEP:
+        return _BY_SWEEP[name]
     if name not in _KNOWN:
         raise NameNotFoundError(unknown_name("reproduction", name, names()))
     return _KNOWN[name]

@@ -160,7 +160,12 @@ SYSTEM = register_parts(
             "Pans, Chen, Jovanova, Soft and Steady Wins the Race: Model-based design for an adaptive soft "
             "meta-mechanism for locomotion on deformable terrain"
         ),
-        parts={"rigid": "nine rigid wheels, one to four paddles and a plain one, on five rigid terrains (MuJoCo)"},
+        parts={
+            "limb": "one pleated limb bent, loaded and blocked, against the closed form (finite elements)",
+            "rigid": "nine rigid wheels, one to four paddles and a plain one, on five rigid terrains (MuJoCo)",
+            "reduced": "the limb as a chain of sprung hinges, and robots on such wheels (finite elements, MuJoCo)",
+            "granular": "three shapes of the soft wheel on four sands (LAMMPS with MuJoCo)",
+        },
     )
 )
 

@@ -101,6 +101,8 @@ def history_columns(study: Study) -> list[Column]:
 class _Unmeshed:
     """As much of a model as the columns of a history depend on."""
 
+    bodies = Model.bodies
+
     def __init__(self, study: Study):
         self.supplies = {cavity.name: cavity.supply for cavity in study.cavities}
         self.surfaces = self.supplies
