@@ -65,7 +65,7 @@ def write_skin_report(
     )
     at = f"at {study.volume:g} mL; over re-entrant columns at {show(study.pressure, 'pressure')}"
     for name, caption, content in (
-        ("trends", f"Curvature of the outer edge, diameter at mid-length and pressure {at}.", trend_figure(study, table)),
+        ("trends", f"Curvature of the outer edge, diameter at mid-length, pressure {at}.", trend_figure(study, table)),
         ("map", "Planar map of the first design of the study: 7 cells along, 12 around, cg 0.2.",
          lattice_figure(BendingSkin().tube.lattice)),
     ):  # fmt: skip

@@ -248,7 +248,9 @@ def _number(known: Measured, name: str, skin: Skin, reported: float, unit: str) 
     value = known.value(skin, f"{name} at 75 mL")
     note = _LINE[name]
     if name == "edge_curvature":
-        note += f"; through the centre line, which swelling does not bend, {known.value(skin, 'curvature at 75 mL'):.3g}"
+        note += (
+            f"; through the centre line, which swelling does not bend, {known.value(skin, 'curvature at 75 mL'):.3g}"
+        )
     row = Comparison(name, f"{skin.along} x {skin.around} cells, 75 mL", reported, _or_none(value), unit, note)
     difference = row.relative_difference
     return Finding(row, f"{reported:g} {unit}", None if difference is None else abs(difference) <= WITHIN)

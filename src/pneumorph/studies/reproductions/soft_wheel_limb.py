@@ -283,8 +283,10 @@ def _height(study: LimbStudy, bending: Solution | None, pressure: float) -> floa
 NOTES = (
     "Given by the study: Dragon Skin 30 as a Yeoh solid, C1 = 114.88 kPa, C2 = 1.262 kPa; trapezoidal chambers, "
     "neutral at most curvature; friction 0.2 between chamber walls; gravity; heights of the wheel 230 and 280 mm.",
-    "Assumed: every dimension of the limb (see docs/soft-wheel.md), chosen so that four limbs make a wheel of about "
-    "the two heights; the base is Smooth-Sil 950, the study names no strain-limiting material; density 1.08 g/cm3.",
+    "Assumed: every dimension of the limb (see docs/soft-wheel.md): length, radius and hub chosen so that four limbs "
+    "make a wheel of about the two heights, walls, depth and base so that the blocked force has about the reported "
+    "size. Those rows are a calibration, no independent check. The base is Smooth-Sil 950, the study names no "
+    "strain-limiting material; density 1.08 g/cm3.",
     "Half a limb is modelled, mirrored in the middle plane, with quadratic tetrahedra; the study has linear elements "
     "of 3 mm. Bending is computed without gravity, as of a limb on its side; with the foot loaded or held, gravity "
     "acts from the axle to the foot.",
