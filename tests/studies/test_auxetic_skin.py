@@ -94,7 +94,7 @@ def test_a_trend_must_hold_at_every_step():
         return (curvature, edge * (0.8 if skin == Skin() else 1.0), *rest)
 
     found = skins.findings(study, table_of(study, bent))
-    trends = [item for item in found if item.row.quantity == "edge_curvature, last / first"]
+    trends = [item for item in found if item.row.quantity == "edge curvature, last / first"]
     (item,) = [item for item in trends if "cells along" in item.row.condition]
     assert item.row.computed > 1.0
     assert item.holds is False

@@ -187,8 +187,9 @@ def findings(study: SkinStudy, table: SweepTable) -> tuple[Finding, ...]:
     for name in ("edge_curvature", "diameter"):
         rows.append(
             _order(
-                f"change of the pressure / of the {name}, relative", f"modulus ratio 20 to 80, {at}",
-                _change(known, "pressure", ratios), _change(known, name, ratios), f"pressure strongly, {name} hardly",
+                f"change of the pressure / of the {_words(name)}, relative", f"modulus ratio 20 to 80, {at}",
+                _change(known, "pressure", ratios), _change(known, name, ratios),
+                f"pressure strongly, {_words(name)} hardly",
             )
         )  # fmt: skip
     rows.append(_trend(known, "edge_curvature", gaps[:2], -1, f"cg 0.2, 0.4, {at}"))
@@ -227,7 +228,7 @@ def _trend(known: Measured, name: str, skins: Sequence[Skin], sign: int, conditi
     ratio = values[-1] / values[0]
     holds = None if np.isnan(values).any() else bool(_least_step(values, sign) > 0.0)
     said = "over 1, rises" if sign > 0 else "under 1, falls"
-    shown = name.removesuffix(" at pressure")
+    shown = _words(name.removesuffix(" at pressure"))
     row = Comparison(f"{shown}, last / first", condition, 1.0, _or_none(ratio), "", f"reported: {said} at every step")
     return Finding(row, said, holds)
 
@@ -251,7 +252,7 @@ def _number(known: Measured, name: str, skin: Skin, reported: float, unit: str) 
         note += (
             f"; through the centre line, which swelling does not bend, {known.value(skin, 'curvature at 75 mL'):.3g}"
         )
-    row = Comparison(name, f"{skin.along} x {skin.around} cells, 75 mL", reported, _or_none(value), unit, note)
+    row = Comparison(_words(name), f"{skin.along} x {skin.around} cells, 75 mL", reported, _or_none(value), unit, note)
     difference = row.relative_difference
     return Finding(row, f"{reported:g} {unit}", None if difference is None else abs(difference) <= WITHIN)
 
@@ -271,6 +272,10 @@ def _change(known: Measured, name: str, skins: Sequence[Skin]) -> float:
 
 def _least_step(values: Array, sign: int) -> float:
     return float(np.min(sign * np.diff(values)))
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
 
 
 def _or_none(value: float) -> float | None:
