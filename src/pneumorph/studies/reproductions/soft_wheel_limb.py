@@ -209,7 +209,8 @@ def compare(study: LimbStudy, solutions: Mapping[str, Solution]) -> tuple[Compar
             rows.append(
                 Comparison(
                     f"blocked force, {what}", condition, reported, _at(blocked, key, PRESSURE, pressure), "N",
-                    f"{note}force on what holds the foot, weight of the limb included",
+                    f"{note}force on what holds the foot, weight of the limb included; walls and depth were chosen by "
+                    "its size",
                 )
             )  # fmt: skip
     rows += _stresses(blocked, "35 kPa, foot held", PRESSURE, 0.035, 878.0, 1.23)
