@@ -63,6 +63,14 @@ def test_the_balloon_that_stiffens_passes_a_maximum_and_a_minimum_of_its_closed_
     assert min(pressure[turns[0] + 1], pressure[-1]) > pressure[turns[1] + 1]
 
 
+def test_a_tube_under_a_loose_skin_passes_a_greatest_pressure_unless_its_rubber_stiffens():
+    soft = solved("bulging.toml").history.values("pressure:cavity")
+    stiffening = solved("bulging-gent.toml").history.values("pressure:cavity")
+    assert 0 < soft.argmax() < len(soft) - 1
+    assert (np.diff(stiffening) > 0.0).all()
+    assert stiffening[-1] > 1.2 * soft.max()
+
+
 def test_the_tube_widens_as_the_textbook_says_at_a_small_pressure():
     study, solution = load_study(EXAMPLES / "tube.toml"), solved("tube.toml")
     tube = study.actuator
