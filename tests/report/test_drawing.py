@@ -1,12 +1,16 @@
 import numpy as np
 import pytest
 
-from pneumorph.mesh import CellBlock, Mesh, box
+from pneumorph.geometry import BendingSkin
+from pneumorph.materials import NeoHookean
+from pneumorph.mechanics import Cavity, Clamp, Model, Symmetry
+from pneumorph.mechanics.state import rest
+from pneumorph.mesh import CellBlock, Mesh, box, generate
 from pneumorph.report.cut import Plane, cap, cut_lines, cut_surface, rim
 from pneumorph.report.drawing import Drawing
 from pneumorph.report.fields import FIELDS
 from pneumorph.report.surface import UNNAMED, edges, normals, outline, surface
-from pneumorph.report.view import View, face_on
+from pneumorph.report.view import View, cut_plane, face_on
 
 
 def area(part, points):
@@ -131,3 +135,14 @@ def test_a_mesh_of_two_domains_labels_its_section_by_domain():
     x = (section.weights @ mesh.points)[section.triangles].mean(axis=1)[:, 0]
     assert section.names == ("a", "b")
     assert ((x < 0.5) == (section.label == 0)).all()
+
+
+def test_a_half_tube_that_is_wider_than_long_is_cut_and_seen_from_above():
+    mesh = generate(BendingSkin(cells_along=1, length=14.9, half=True), coarse=True)
+    materials = dict.fromkeys(("tube", "skin", "cap"), NeoHookean(0.037))
+    cavity = Cavity("cavity", ("cavity",), mirrors=("symmetry_y",))
+    model = Model(mesh, materials, (Clamp("clamp"), Symmetry("symmetry_y")), cavities=(cavity,))
+    plane, view = cut_plane([rest(model)], View((0.0, -1.0, 0.0), (0.0, 0.0, 1.0)))
+    assert np.abs(plane.normal) == pytest.approx([0.0, 0.0, 1.0])
+    assert np.linalg.norm(view.up) == pytest.approx(1.0)
+    assert np.dot(view.up, view.direction) == pytest.approx(0.0)

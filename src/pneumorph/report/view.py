@@ -111,6 +111,8 @@ def cut_plane(states: Sequence[State], view: View) -> tuple[Plane, View]:
             normal = _snapped(np.cross(along, offset))
             normal *= -1.0 if normal @ view.direction < 0.0 else 1.0
     up = np.array(view.up) - normal * (normal @ np.array(view.up))
+    if np.linalg.norm(up) < 0.1:  # seen from above: what lay behind is up
+        up = -np.array(view.direction) + normal * (normal @ np.array(view.direction))
     towards = View(_vector(normal), _vector(up / np.linalg.norm(up)))
     return Plane(_vector(middle), _vector(normal)), towards.fitted(
         [mesh.points, *(state.positions for state in states)]
