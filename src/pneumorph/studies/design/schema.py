@@ -52,7 +52,7 @@ class SearchSection(Section):
     cells_along: Counts = (8,)
     cells_around: Counts = (12,)
     reentrant: Numbers = (0.5,)
-    cg: Numbers = (0.2, 0.3, 0.4)
+    cg: Numbers = (0.2, 0.3)
     pressure: Annotated[tuple[quantity("pressure"), ...], Strict(False)] = (0.005, 0.02)  # type: ignore[valid-type]
     model: Literal["full", "homogenised"] = "full"
     trials: int = 1200
