@@ -212,7 +212,7 @@ def test_a_law_that_does_not_reach_the_target_or_its_pressure_is_refused():
 def test_the_example_is_a_search():
     made = load_design(Path(__file__).parents[3] / "examples" / "targets" / "s.toml")
     assert made.target.planar
-    assert made.target.length == pytest.approx(109.0, rel=1e-4)
+    assert made.target.length == pytest.approx(115.0, rel=1e-4)
     assert made.sampler == "cma-es"
     with pytest.raises(StudyError, match=r"cannot read the target file 'none\.toml'"):
         load_design("none.toml")
