@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from pneumorph.report import style
+from pneumorph.report.figure_file import figure_file
 
 Array = NDArray[np.float64]
 
@@ -37,7 +36,7 @@ def lines_figure(lines: Mapping[str, Array], planar: bool) -> bytes:
             axes.set_xlabel(f"{'xyz'[i]} [mm]")
             axes.set_ylabel(f"{'xyz'[j]} [mm]")
         figure.axes[0].legend(loc="best")
-        return _svg(figure)
+        return figure_file(figure)
 
 
 def convergence_figure(trials: Array) -> bytes:
@@ -52,10 +51,4 @@ def convergence_figure(trials: Array) -> bytes:
         axes.set_xlabel("trial")
         axes.set_ylabel("root-mean-square deviation [mm]")
         axes.legend(loc="upper right")
-        return _svg(figure)
-
-
-def _svg(figure: Figure) -> bytes:
-    buffer = io.BytesIO()
-    FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})
-    return buffer.getvalue()
+        return figure_file(figure)

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from pneumorph.errors import InputError
 from pneumorph.materials.fitting import Fit, SpecimenTest
 from pneumorph.materials.fitting.specimen import nominal_stress
 from pneumorph.materials.tension import MODES
 from pneumorph.report import style
+from pneumorph.report.figure_file import check_form, figure_file
 
 # laws drawn in colour; the others are grey lines behind them
 _IN_COLOUR = 4
@@ -24,7 +21,6 @@ _DASHES: tuple[tuple[float, ...], ...] = ((), (6.0, 2.0), (2.0, 1.6), (7.0, 2.0,
 _MARKS = ("o", "s", "^", "D", "v", "P")
 _CURVE_POINTS = 200
 _MEASURED, _OTHERS = "measured", "other laws"
-FORMATS = ("svg", "png")
 
 
 def fit_figure(tests: Sequence[SpecimenTest], fits: Sequence[Fit], form: str = "svg") -> bytes:
@@ -32,8 +28,7 @@ def fit_figure(tests: Sequence[SpecimenTest], fits: Sequence[Fit], form: str = "
 
     form: "svg" or "png"; raises InputError for another one.
     """
-    if form not in FORMATS:
-        raise InputError(f"form = '{form}', allowed: {', '.join(FORMATS)}")
+    check_form(form)
     modes = [mode for mode in MODES if any(test.mode == mode for test in tests)]
     with matplotlib.rc_context(style.RC):
         figure = Figure(figsize=(1.2 + 3.1 * len(modes), 4.3), layout="constrained")
@@ -50,13 +45,7 @@ def fit_figure(tests: Sequence[SpecimenTest], fits: Sequence[Fit], form: str = "
         figure.legend(
             [shown[label] for label in labels], labels, loc="outside lower center", ncols=min(3, 1 + len(modes))
         )
-        buffer = io.BytesIO()
-        if form == "svg":
-            FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})
-        else:
-            figure.set_dpi(160)
-            FigureCanvasAgg(figure).print_png(buffer)
-    return buffer.getvalue()
+        return figure_file(figure, form)
 
 
 def _label(fit: Fit) -> str:

@@ -11,7 +11,8 @@ from pathlib import Path
 from pneumorph.materials.fitting import Fit, Ranking, SpecimenTest
 from pneumorph.materials.fitting.specimen import nominal_stress
 from pneumorph.materials.stability import Instability
-from pneumorph.report.fit_figure import FORMATS, fit_figure
+from pneumorph.report.figure_file import FORMATS
+from pneumorph.report.fit_figure import fit_figure
 from pneumorph.solution.files import make_folder, write_atomically
 from pneumorph.studies.fragment import material_fragment
 

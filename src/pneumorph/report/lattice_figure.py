@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import io
-
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from pneumorph.errors import InputError
 from pneumorph.geometry.lattice import Lattice, Polygon
 from pneumorph.geometry.lattice.cell_map import Cell
 from pneumorph.report import style
+from pneumorph.report.figure_file import check_form, figure_file
 
-FORMATS = ("svg", "png")
 _COLOURS = {"re-entrant": "#0072b2", "honeycomb": "#d55e00", "brick": "#8a6d00", "polygon": "#009e73"}
 _ACROSS = 5.2  # inches of the longer side of the sheet
 
@@ -28,8 +23,7 @@ def lattice_figure(lattice: Lattice, form: str = "svg") -> bytes:
 
     Cells of one kind share a colour, paler for a larger cg. form: "svg" or "png"; raises InputError for another one.
     """
-    if form not in FORMATS:
-        raise InputError(f"form = '{form}', allowed: {', '.join(FORMATS)}")
+    check_form(form)
     scale = _ACROSS / max(lattice.around, lattice.length)
     with matplotlib.rc_context(style.RC):
         width, height = lattice.around * scale, lattice.length * scale
@@ -61,13 +55,7 @@ def lattice_figure(lattice: Lattice, form: str = "svg") -> bytes:
         first = {label: next(c for row in lattice.cells for c in row if _label(c) == label) for label in shown}
         patches = [Patch(color=_colour(cell)) for cell in first.values()]
         axes.legend(patches, list(first), loc="upper left", bbox_to_anchor=(1.01, 1.0))
-        buffer = io.BytesIO()
-        if form == "svg":
-            FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})
-        else:
-            figure.set_dpi(160)
-            FigureCanvasAgg(figure).print_png(buffer)
-    return buffer.getvalue()
+        return figure_file(figure, form)
 
 
 def _name(cell: Cell) -> str:

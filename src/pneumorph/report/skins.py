@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from pneumorph.geometry import BendingSkin
 from pneumorph.report import style
 from pneumorph.report.comparison import write_comparison
+from pneumorph.report.figure_file import figure_file
 from pneumorph.report.lattice_figure import lattice_figure
 from pneumorph.report.page import Item, Page, data_uri
 from pneumorph.report.sweep_report import write_sweep_report
@@ -97,9 +96,7 @@ def trend_figure(study: skins.SkinStudy, table: SweepTable) -> bytes:
                     axes.set_ylabel(f"{key.replace('_', ' ')} [{unit}]")
                 if row == len(_RESULTS) - 1 or (trend.place and row == len(_RESULTS) - 2):
                     axes.set_xlabel(trend.x)
-        buffer = io.BytesIO()
-        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})
-    return buffer.getvalue()
+        return figure_file(figure)
 
 
 def _write(path: Path, content: bytes) -> None:

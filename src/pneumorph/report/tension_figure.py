@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 
 import matplotlib
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from pneumorph.errors import InputError
 from pneumorph.homogenisation import TensionTest
 from pneumorph.report import style
-
-FORMATS = ("svg", "png")
+from pneumorph.report.figure_file import check_form, figure_file
 
 
 def tension_figure(tests: Mapping[str, TensionTest], form: str = "svg") -> bytes:
     """Return the picture of some tests, name -> test, as an SVG or PNG file; raises InputError for another form."""
-    if form not in FORMATS:
-        raise InputError(f"form = '{form}', allowed: {', '.join(FORMATS)}")
+    check_form(form)
     if not tests:
         raise InputError("tension figure: no tests, expected at least one")
     with matplotlib.rc_context(style.RC):
@@ -34,10 +29,4 @@ def tension_figure(tests: Mapping[str, TensionTest], form: str = "svg") -> bytes
             axes.set_xlabel("strain [%]")
             axes.set_ylabel(label)
         force.legend(frameon=False)
-        buffer = io.BytesIO()
-        if form == "svg":
-            FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})
-        else:
-            figure.set_dpi(160)
-            FigureCanvasAgg(figure).print_png(buffer)
-    return buffer.getvalue()
+        return figure_file(figure, form)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -44,6 +43,7 @@ from pneumorph.studies.measuring import Measure, measures_of
 from pneumorph.studies.schema import TAGS, LibraryMaterial, PhaseSection, StudyFile
 from pneumorph.studies.section import refusal
 from pneumorph.studies.supplies import supply_of, tube_of
+from pneumorph.studies.toml_file import read_toml
 from pneumorph.studies.touching import bodies_of, contacts_of
 from pneumorph.studies.writing import to_toml
 from pneumorph.units import parse, show
@@ -244,12 +244,7 @@ def load_study(path: Path | str) -> Study:
     wrong types; UnitError, GeometryError, NameNotFoundError and other InputErrors for values that are refused.
     """
     path = Path(path)
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise StudyError(f"cannot read the study file '{path}': {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise StudyError(f"'{path}' is not a TOML file: {error}") from error
+    table = read_toml(path, "study file")
     try:
         return study_from(table, path.stem, path.parent)
     except InputError as error:

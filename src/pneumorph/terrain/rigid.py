@@ -24,12 +24,11 @@ _MILLIMETRE = 1e3
 
 
 @dataclass(frozen=True, eq=False)
-class Travel:
-    """The way of a robot at n recorded moments.
+class Way:
+    """The way of a robot at n recorded moments, on any ground.
 
     time: (n,), s. centre: (n, 3), mm, the robot's centre. upright: (n,), the vertical part of its upward direction,
     1 level and negative upside down. turn, turn_speed: (n, wheels), rad and rad/s. pose: (n, coordinates), MuJoCo's.
-    penetration: the deepest overlap of robot and ground at these moments, mm.
     """
 
     time: Array
@@ -38,7 +37,6 @@ class Travel:
     turn: Array
     turn_speed: Array
     pose: Array
-    penetration: float
 
     @property
     def distance(self) -> float:
@@ -49,6 +47,13 @@ class Travel:
     def sideways(self) -> float:
         """How far the centre moved along y, mm."""
         return float(self.centre[-1, 1] - self.centre[0, 1])
+
+
+@dataclass(frozen=True, eq=False)
+class Travel(Way):
+    """The way of a robot on rigid ground; penetration: the deepest overlap of both at these moments, mm."""
+
+    penetration: float
 
     @property
     def as_the_crow_flies(self) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,6 +22,7 @@ from pneumorph.studies.section import refusal, write
 from pneumorph.studies.study import Study, study_from
 from pneumorph.studies.sweeps import Sweep, SweepFolder
 from pneumorph.studies.sweeps.schema import SweepFile
+from pneumorph.studies.toml_file import read_toml
 from pneumorph.studies.writing import to_toml
 
 MEASURES = ("tip_rotation", TURN, LENGTH)
@@ -215,12 +215,7 @@ def load_design(path: Path | str) -> DesignTask:
     wrong types; NameNotFoundError for an unknown curve, UnitError for points without a unit, other InputErrors.
     """
     path = Path(path)
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise StudyError(f"cannot read the target file '{path}': {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise StudyError(f"'{path}' is not a TOML file: {error}") from error
+    table = read_toml(path, "target file")
     try:
         return design_from(table, path.stem, path.parent)
     except InputError as error:

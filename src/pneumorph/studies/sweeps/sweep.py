@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,6 +21,7 @@ from pneumorph.studies.sweeps.paths import replaced
 from pneumorph.studies.sweeps.results import Result, results_of
 from pneumorph.studies.sweeps.sampling import combinations
 from pneumorph.studies.sweeps.schema import TAGS, SweepFile
+from pneumorph.studies.toml_file import read_toml
 from pneumorph.studies.writing import to_toml, toml_key, toml_value
 
 
@@ -91,7 +91,7 @@ def load_sweep(path: Path | str) -> Sweep:
     wrong types, in it or in its study; other InputErrors for values that are refused.
     """
     path = Path(path)
-    table = _read(path, "sweep file")
+    table = read_toml(path, "sweep file")
     try:
         return sweep_from(table, path.stem, path.parent)
     except InputError as error:
@@ -104,13 +104,4 @@ def sweep_from(table: Mapping[str, Any], name: str, folder: Path | None = None) 
         file = SweepFile.model_validate(table, context={"quantities": "text", "folder": folder or Path()})
     except ValidationError as error:
         raise refusal(error, TAGS) from None
-    return Sweep(name, file, _read(Path(file.study), "study file"))
-
-
-def _read(path: Path, what: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise StudyError(f"cannot read the {what} '{path}': {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise StudyError(f"'{path}' is not a TOML file: {error}") from error
+    return Sweep(name, file, read_toml(Path(file.study), "study file"))

@@ -24,7 +24,7 @@ from pneumorph.terrain.granular.model import WHEEL_FILE, Vehicle, vehicle_mjcf
 from pneumorph.terrain.granular.sands import Sand, damping_factor
 from pneumorph.terrain.granular.settling import Settled, wake
 from pneumorph.terrain.mjcf import BODY, CENTRE
-from pneumorph.terrain.rigid import engine, load
+from pneumorph.terrain.rigid import Way, engine, load
 from pneumorph.terrain.rover import GRAVITY, Drive
 from pneumorph.terrain.si import METRE
 
@@ -84,23 +84,16 @@ class Energies:
 
 
 @dataclass(frozen=True, eq=False)
-class GranularTravel:
-    """The way of a vehicle over grains at n recorded moments.
+class GranularTravel(Way):
+    """The way of a vehicle over grains; its centre is at the height of the axles.
 
-    time (n,), s; centre (n, 3), mm, the vehicle's centre, at the height of the axles; upright (n,), as in `Travel`;
-    turn, turn_speed (n, wheels), rad and rad/s; pose (n, coordinates), MuJoCo's; load (n,), N, the upward force of the
-    grains on all wheels, mean over the time since the moment before; energies: where the work went.
+    load (n,), N, the upward force of the grains on all wheels, mean over the time since the moment before; energies:
+    where the work went.
     level: of the bed's surface before the run, mm. radius: of the wheels, mm.
     deepest: overlap of grain and wheel over the grain's radius, the most. places (grains, 3), radii (grains,): the bed
     after the run, mm. wall, steps: time that LAMMPS's run took, s, and its steps.
     """
 
-    time: Array
-    centre: Array
-    upright: Array
-    turn: Array
-    turn_speed: Array
-    pose: Array
     load: Array
     energies: Energies
     level: float
@@ -110,16 +103,6 @@ class GranularTravel:
     radii: Array
     wall: float
     steps: int
-
-    @property
-    def distance(self) -> float:
-        """How far the centre moved forward, along x, mm."""
-        return float(self.centre[-1, 0] - self.centre[0, 0])
-
-    @property
-    def sideways(self) -> float:
-        """How far the centre moved along y, mm."""
-        return float(self.centre[-1, 1] - self.centre[0, 1])
 
     def ride_height(self, since: float) -> float:
         """Return the mean height of the axles over the bed's surface as it was, mm, from a time (s) on."""
