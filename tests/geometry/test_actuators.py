@@ -54,6 +54,7 @@ def test_count_of_chambers_that_is_not_a_whole_number_from_one_is_refused(templa
         ({"airway_roof": 20.0}, r"higher than a chamber's block: expected at most 22 mm"),
         ({"airway_roof": 0.0}, r"airway_roof = 0 mm: expected a length greater than 0"),
         ({"gap": 0.0}, r"gap = 0 mm: expected a length greater than 0"),
+        ({"half": 1}, r"half = 1: expected True or False"),
     ],
 )
 def test_hexagonal_prism_refuses_dimensions_that_do_not_fit(change, message):

@@ -39,6 +39,11 @@ def whole_number(default: int, symbol: str, help: str, *, given: bool = False) -
     return field(default=default, metadata={"symbol": symbol, "given": given, "help": help, "kind": "count"})
 
 
+def angle(default: float, symbol: str, help: str, *, given: bool = False) -> Any:
+    """Declare an angle in rad, of either sign."""
+    return field(default=default, metadata={"symbol": symbol, "given": given, "help": help, "kind": "angle"})
+
+
 @dataclass(frozen=True)
 class Actuator(ABC):
     """Base of the templates. A template is frozen and checked: one that exists makes a closed solid.
@@ -127,8 +132,11 @@ def _check(owner: str, name: str, value: object, data: Mapping[str, Any]) -> Non
         if not isinstance(value, Integral) or isinstance(value, bool) or value < 1:
             raise GeometryError(f"{owner}: {name} = {value!r}: expected a whole number of at least 1")
         return
+    unit = "rad" if data["kind"] == "angle" else "mm"
     if not isinstance(value, Real) or isinstance(value, bool) or not math.isfinite(value):
-        raise GeometryError(f"{owner}: {name} = {value!r}: expected a finite number in mm")
+        raise GeometryError(f"{owner}: {name} = {value!r}: expected a finite number in {unit}")
+    if data["kind"] == "angle":
+        return
     if value < 0.0 or (data["open"] and value == 0.0):
         allowed = "greater than 0" if data["open"] else "of at least 0"
         raise GeometryError(f"{owner}: {name} = {value:g} mm: expected a length {allowed}")

@@ -46,10 +46,10 @@ class SkinSegment:
         if self.columns is not None:
             Segment(self.rows, tuple((count, Cell(kind)) for count, kind in self.columns))
 
-    def cells(self, columns: Runs, cg: float) -> Segment:
+    def cells(self, columns: Runs, cg: float, least_beam: float = 0.0) -> Segment:
         """Return the segment of a map; columns, cg: what holds where the segment has none of its own."""
         chosen, gap = (columns if self.columns is None else self.columns), (cg if self.cg is None else self.cg)
-        row = Segment(self.rows, tuple((count, Cell(kind, gap)) for count, kind in chosen)).row
+        row = Segment(self.rows, tuple((count, Cell(kind, gap, least_beam)) for count, kind in chosen)).row
         start = -self.turn % len(row)
         return Segment(self.rows, tuple((1, cell) for cell in (*row[start:], *row[:start])))
 
@@ -66,6 +66,8 @@ class BendingSkin(Actuator):
 
     reentrant: share of the columns around that are re-entrant, 0 to 1; a whole number of columns.
     cg: gap of a cell over its height, above 0 to 0.5, where both kinds are the same brick.
+    least_beam: width below which the oblique beams, between rows of holes, do not go; 0 leaves the holes as published,
+        whose rows touch at cg = 0.5. Not of the study: an assumption where it is given.
     segment: a map by segments from the clamp, `cells_along` rows in all; none: one segment.
     blend: cells along, half of them on either side of a border, over which one segment goes over into the next; an even
         number, 0 for at once.
@@ -84,6 +86,7 @@ class BendingSkin(Actuator):
     depth: float = millimetres(2.0, "a", "depth of the beams, radial", given=True)
     beam: float = millimetres(1.57, "b", "width of the straight beams", given=True)
     cap: float = millimetres(2.0, "c", "thickness of the discs in the ends", given=True)
+    least_beam: float = millimetres(0.0, "b_min", "least width of the oblique beams, 0 for as published", zero=True)
     segment: tuple[SkinSegment, ...] = ()
     blend: int = 0
     half: bool = field(default=False, metadata={"help": "keep the part with y >= 0 only, cut in the plane of symmetry"})
@@ -130,10 +133,10 @@ class BendingSkin(Actuator):
         """The map of cells, from the clamp."""
         count = round(self.reentrant * self.cells_around)
         if not self.segment:
-            return halves(self.cells_along, self.cells_around, self.cg, reentrant=count)
+            return halves(self.cells_along, self.cells_around, self.cg, reentrant=count, least_beam=self.least_beam)
         runs = ((count, "re-entrant"), (self.cells_around - count, "honeycomb"))
         usual = tuple(run for run in runs if run[0])
-        return cell_map([item.cells(usual, self.cg) for item in self.segment], blend=self.blend)
+        return cell_map([item.cells(usual, self.cg, self.least_beam) for item in self.segment], blend=self.blend)
 
     @property
     def outer_edge(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pneumorph.geometry import occ
 from pneumorph.geometry.actuator import Actuator, millimetres, whole_number
@@ -41,16 +41,17 @@ class HexagonalPrism(Actuator):
     airway_height: float = millimetres(3.0, "h3", "height of the airway")
     airway_roof: float = millimetres(1.5, "h4", "wall of the bridge above the airway")
     airway_side: float = millimetres(1.5, "w4", "wall of the bridge beside the airway")
+    half: bool = field(default=False, metadata={"help": "keep x >= 0 only, cut in a plane between two cavities"})
 
     @property
     def cavities(self) -> tuple[str, ...]:
-        """cavity_1 to cavity_6, in order around the column."""
-        return tuple(f"cavity_{i + 1}" for i in range(SIDES))
+        """cavity_1 to cavity_6, in order around the column; of a half cavity_1, cavity_2 and cavity_6."""
+        return tuple(name for _, name in self.sides)
 
     @property
     def face_names(self) -> tuple[str, ...]:
-        """clamp, tip, outer, core and the cavities."""
-        return ("clamp", "tip", "outer", "core", *self.cavities)
+        """clamp, tip, outer, core, the cavities, and symmetry_x of a half."""
+        return ("clamp", "tip", "outer", "core", *self.cavities, *(("symmetry_x",) if self.half else ()))
 
     @property
     def bending_walls(self) -> Mapping[str, float]:
@@ -94,6 +95,18 @@ class HexagonalPrism(Actuator):
         return self.chambers * self.block_length + (self.chambers - 1) * self.gap
 
     @property
+    def chamber_starts(self) -> tuple[float, ...]:
+        """z at which each chamber's block begins, mm."""
+        first, step = (self.length - self.assembly_length) / 2.0, self.block_length + self.gap
+        return tuple(first + i * step for i in range(self.chambers))
+
+    @property
+    def sides(self) -> tuple[tuple[int, str], ...]:
+        """Number and cavity of the flat sides that there are; side i looks 60 degrees times i away from x."""
+        numbers = (0, 1, 5) if self.half else range(SIDES)
+        return tuple((number, f"cavity_{number + 1}") for number in numbers)
+
+    @property
     def cavity_volume(self) -> float:
         """Air in one cavity: N l2 w2 h2 + (N - 1) (l3 + 2 l1) w3 h3, mm³."""
         chamber = self.chamber_length * self.chamber_width * self.chamber_height
@@ -101,6 +114,7 @@ class HexagonalPrism(Actuator):
         return self.chambers * chamber + (self.chambers - 1) * airway
 
     def _check_fit(self) -> None:
+        self._require(isinstance(self.half, bool), f"half = {self.half!r}: expected True or False")
         self._require(
             self.core_radius < self.apothem,
             f"core_radius = {self.core_radius:g} mm leaves no wall: expected less than {self.apothem:.4g} mm "
@@ -142,10 +156,14 @@ class HexagonalPrism(Actuator):
         column = occ.cut(column, [occ.cylinder(self.core_radius, 0.0, self.length, "core")])
         solids = [column]
         air = []
-        for i, name in enumerate(self.cavities):
+        for number, name in self.sides:
             silicone, hollow = self._assembly(name)
-            solids += [occ.turned(part, 60.0 * i) for part in silicone]
-            air.append(occ.turned(occ.fused(hollow), 60.0 * i))
+            solids += [occ.turned(part, 60.0 * number) for part in silicone]
+            air.append(occ.turned(occ.fused(hollow), 60.0 * number))
+        if self.half:
+            far = 4.0 * (self.side + self.block_height)
+            kept = occ.box((0.0, -far, -self.length), (far, far, 2.0 * self.length))
+            solids[0] = occ.common(column, occ.name_low_faces(kept, {"x": "symmetry_x"}))
         return occ.check_solid(occ.cut(occ.fused(solids), air), 1, "HexagonalPrism")
 
     def _assembly(self, name: str) -> tuple[list[occ.Shape], list[occ.Shape]]:
@@ -157,8 +175,7 @@ class HexagonalPrism(Actuator):
         def add(parts: list[occ.Shape], height: float, width: float, low: float, high: float, face: str | None) -> None:
             parts.append(occ.box((floor, -width / 2.0, low), (floor + height, width / 2.0, high), face))
 
-        for i in range(self.chambers):
-            low = (self.length - self.assembly_length) / 2.0 + i * (self.block_length + self.gap)
+        for i, low in enumerate(self.chamber_starts):
             high = low + self.block_length
             wall = self.expansion_wall
             add(silicone, self.block_height, self.block_width, low, high, None)

@@ -127,6 +127,18 @@ def cylinder(radius: float, z0: float, z1: float, name: str | None = None) -> Sh
     return named(occ.Cylinder(occ.Pnt(0, 0, z0), occ.Z, r=radius, h=z1 - z0), name)
 
 
+def elliptic_loft(low: tuple[float, float], high: tuple[float, float], length: float, name: str | None = None) -> Shape:
+    """Return a straight loft between ellipses across x, at 0 and at `length`, all its faces named `name`.
+
+    low, high: half-axes along y and z, mm; the first of a pair is not the smaller one.
+    """
+    wires = [
+        occ.WorkPlane(occ.Axes(occ.Pnt(x, 0, 0), occ.X, occ.Y)).Ellipse(*axes).Wire()
+        for x, axes in ((0.0, low), (length, high))
+    ]
+    return named(occ.ThruSections(wires), name)
+
+
 def sphere(radius: float, name: str | None = None) -> Shape:
     """Return a sphere about the origin, its face named `name`."""
     return named(occ.Sphere(occ.Pnt(0, 0, 0), radius), name)

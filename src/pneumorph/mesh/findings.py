@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumorph.geometry.actuator import Actuator
 from pneumorph.mesh.mesh import FaceBlock, Mesh
 from pneumorph.mesh.reference import jacobians, quadrature
 from pneumorph.mesh.rims import cap_corners
@@ -88,8 +88,17 @@ def _face(mesh: Mesh, name: str, blocks: Iterable[FaceBlock]) -> FaceFound:
     return FaceFound(name, len(areas), float(areas.sum()), centre, normal)
 
 
-def cavities_found(mesh: Mesh, actuator: Actuator) -> list[CavityFound]:
-    """Return the cavities of an actuator on its solid mesh."""
+class _Hollow(Protocol):
+    """What has cavities: an actuator, or several bodies."""
+
+    @property
+    def cavities(self) -> tuple[str, ...]: ...
+
+    def cavity_faces(self, cavity: str) -> tuple[str, ...]: ...
+
+
+def cavities_found(mesh: Mesh, actuator: _Hollow) -> list[CavityFound]:
+    """Return the cavities of an actuator, or of several bodies, on its solid mesh."""
     result = []
     for name in actuator.cavities:
         names = actuator.cavity_faces(name)

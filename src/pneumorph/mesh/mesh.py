@@ -48,6 +48,7 @@ class Mesh:
     space:  "3d", "plane_strain" (1 mm thick) or "axisymmetric" (about the axis x = 0).
     bending_walls: name -> thickness in mm of the walls that bend, for the check of elements across a wall.
     caps:   name -> virtual membranes that close cavities where the body leaves them open; no part of the body.
+    frames: name -> the nodes (d + 1,) that carry a free rigid body, the last ones of all; they belong to no cell.
 
     Raises MeshError for arrays of the wrong shape, nodes out of range or values that are not finite.
     """
@@ -58,6 +59,7 @@ class Mesh:
     space: Space = "3d"
     bending_walls: Mapping[str, float] = field(default_factory=dict)
     caps: Mapping[str, tuple[FaceBlock, ...]] = field(default_factory=dict)
+    frames: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         dimension = 3 if self.space == "3d" else 2
@@ -77,6 +79,9 @@ class Mesh:
                 raise MeshError(f"{kind}: nodes of shape {nodes.shape}, expected (at least 1, {known[kind]})")
             if nodes.min() < 0 or nodes.max() >= len(self.points):
                 raise MeshError(f"{kind}: node numbers must lie in 0..{len(self.points) - 1}")
+        framed = np.concatenate([np.empty(0, dtype=np.int64), *self.frames.values()])
+        if not np.array_equal(framed, np.arange(len(self.points) - len(framed), len(self.points))):
+            raise MeshError("frames: expected their nodes to be the last ones of the mesh, each once")
 
     @property
     def dimension(self) -> int:
@@ -100,10 +105,22 @@ class Mesh:
         return self.faces[name]
 
     def face_nodes(self, name: str) -> NDArray[np.int64]:
-        """Return the sorted node numbers of a named face, each once."""
+        """Return the sorted node numbers of a named face, or of the frame of a free body, each once."""
+        if name in self.frames:
+            return self.frames[name]
         return np.unique(np.concatenate([block.nodes.ravel() for block in self.face_blocks(name)]))
 
     @cached_property
     def size(self) -> float:
-        """Length of the diagonal of the bounding box, mm."""
-        return float(np.linalg.norm(np.ptp(self.points, axis=0)))
+        """Length of the diagonal of the bounding box of the cells, mm."""
+        return float(np.linalg.norm(np.ptp(self.points[: self.solid], axis=0)))
+
+    @property
+    def solid(self) -> int:
+        """How many of the nodes, the first ones, belong to cells; all but those of free bodies."""
+        return len(self.points) - self.framed
+
+    @property
+    def framed(self) -> int:
+        """How many of the nodes, the last ones, carry free rigid bodies."""
+        return sum(len(nodes) for nodes in self.frames.values())

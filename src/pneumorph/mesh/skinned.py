@@ -15,7 +15,7 @@ from pneumorph.mesh.layered import lifted
 from pneumorph.mesh.memory import check_cells
 from pneumorph.mesh.mesh import CellBlock, FaceBlock, Mesh
 from pneumorph.mesh.plug import plug
-from pneumorph.mesh.topology import boundary
+from pneumorph.mesh.topology import boundary, compressed
 
 Array = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ def roll(
     points = np.concatenate([_rolled(sheet, tube, height) for height in heights])
     stack = _stacked(sheet, wall_layers, skin_layers, rings)
     points, stack = _with_plugs(points, stack, sheet, tube.lattice.length, tube.cap)
-    points, blocks = _used(points, stack)
+    points, blocks, _ = compressed(points, stack)
     faces = _faces(points, blocks, tube, half)
     return Mesh(points, blocks, MappingProxyType(faces), bending_walls={"wall": tube.wall})
 
@@ -128,13 +128,6 @@ def _with_plugs(
         blocks = [*blocks, CellBlock("tetra10", "cap", cells)]
     merged = np.concatenate([block.nodes for block in blocks[-2:]])
     return points, [*blocks[:-2], CellBlock("tetra10", "cap", merged)]
-
-
-def _used(points: Array, blocks: list[CellBlock]) -> tuple[Array, tuple[CellBlock, ...]]:
-    used = np.unique(np.concatenate([block.nodes.ravel() for block in blocks]))
-    new = np.full(len(points), -1, dtype=np.int64)
-    new[used] = np.arange(len(used))
-    return points[used], tuple(CellBlock(b.kind, b.domain, new[b.nodes]) for b in blocks)
 
 
 def _faces(

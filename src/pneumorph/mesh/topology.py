@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +59,27 @@ def boundary(blocks: Iterable[CellBlock]) -> tuple[FaceBlock, ...]:
 def corner_keys(kind: str, nodes: Nodes) -> Nodes:
     """Return the sorted corner nodes (faces, corners) that identify faces whatever their orientation."""
     return np.sort(nodes[:, : CORNERS[kind]], axis=1)
+
+
+def rows_in(rows: Nodes, others: Nodes) -> NDArray[np.bool_]:
+    """Return which rows (n, k) are among others (m, k), as bool (n,)."""
+    _, number = np.unique(np.concatenate([others, rows]), axis=0, return_inverse=True)
+    number = number.ravel()
+    return np.isin(number[len(others) :], number[: len(others)])
+
+
+def compressed(
+    points: NDArray[np.float64], blocks: Iterable[CellBlock], faces: Mapping[str, tuple[FaceBlock, ...]] | None = None
+) -> tuple[NDArray[np.float64], tuple[CellBlock, ...], dict[str, tuple[FaceBlock, ...]]]:
+    """Return points, cells and faces without the points that no cell uses."""
+    cells = tuple(blocks)
+    used = np.unique(np.concatenate([block.nodes.ravel() for block in cells]))
+    new = np.full(len(points), -1, dtype=np.int64)
+    new[used] = np.arange(len(used))
+    named = {
+        name: tuple(FaceBlock(block.kind, new[block.nodes]) for block in parts) for name, parts in (faces or {}).items()
+    }
+    return points[used], tuple(CellBlock(block.kind, block.domain, new[block.nodes]) for block in cells), named
 
 
 def open_edges(faces: Iterable[FaceBlock]) -> Nodes:

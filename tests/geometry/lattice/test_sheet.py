@@ -45,6 +45,39 @@ def test_oblique_beams_have_their_closed_form_width(cg):
     assert uniform(Cell("honeycomb", cg)).narrowest_beam == pytest.approx(min(BEAM, honeycomb), rel=1e-12)
 
 
+@pytest.mark.parametrize("kind", ["re-entrant", "honeycomb", "brick"])
+@pytest.mark.parametrize("cg", [0.2, 0.4, 0.45, 0.5])
+def test_a_least_beam_is_kept_between_rows_and_changes_no_hole_that_leaves_more(kind, cg):
+    plain, kept = uniform(Cell(kind, cg)), uniform(Cell(kind, cg, least_beam=1.2))
+    if plain.narrowest_beam >= 1.2:
+        assert all((a.corners == b.corners).all() for a, b in zip(plain.holes, kept.holes, strict=True))
+    else:
+        assert kept.narrowest_beam == pytest.approx(1.2, rel=1e-9)
+        middle = [hole.corners.mean(axis=0) for hole in plain.holes]
+        assert np.allclose([hole.corners.mean(axis=0) for hole in kept.holes], middle)
+
+
+def test_with_a_least_beam_both_lattices_are_still_one_brick_at_cg_one_half():
+    """Bricks in a wall: holes of h / 2 less the beam, w - b wide."""
+    first, second = (uniform(Cell(kind, 0.5, least_beam=1.57)) for kind in ("re-entrant", "honeycomb"))
+    assert all(np.allclose(a.corners, b.corners) for a, b in zip(first.holes, second.holes, strict=True))
+    assert first.holes[0].area == pytest.approx((WIDTH - BEAM) * (HEIGHT / 2.0 - 1.57))
+
+
+def test_a_blend_goes_from_one_least_beam_to_the_other():
+    ends = Cell("re-entrant", 0.2, least_beam=1.0), Cell("honeycomb", 0.2, least_beam=2.0)
+    rows = cell_map([Segment(2, ((4, ends[0]),)), Segment(2, ((4, ends[1]),))], blend=2)
+    assert [row[0].least_beam for row in rows] == pytest.approx([1.0, 1.25, 1.75, 2.0])
+
+
+def test_a_least_beam_that_is_none_or_leaves_no_hole_is_refused():
+    for wrong in (-1.0, math.nan, True):
+        with pytest.raises(GeometryError, match="least_beam = "):
+            Cell("brick", 0.5, least_beam=wrong)
+    with pytest.raises(GeometryError, match="least_beam = 8 mm leaves no hole in a brick cell"):
+        uniform(Cell("brick", 0.5, least_beam=8.0))
+
+
 def test_at_cg_one_half_both_lattices_are_the_same_bricks_that_touch():
     first, second = uniform(Cell("re-entrant", 0.5)), uniform(Cell("honeycomb", 0.5))
     x = np.linspace(0.0, first.around, 200)

@@ -7,22 +7,28 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from pneumorph.errors import GeometryError
-from pneumorph.geometry.lattice.unit_cell import BRICK, Polygon, kind_of
+from pneumorph.geometry.lattice.unit_cell import BRICK, Polygon, finite_length, kind_of
 
 
 @dataclass(frozen=True)
 class Cell:
     """One place of a map.
 
-    kind: a name of `KINDS` or a `Polygon`. cg: gap over the height of the cell; a polygon does not use it.
-    Raises GeometryError for an unknown kind; the gap is checked where the size of the cell is known.
+    kind: a name of `KINDS` or a `Polygon`. cg: gap over the height of the cell. least_beam: width below which the beams
+    between rows of holes do not go, mm, 0 for none: where cg alone would make them narrower, the holes are lower by
+    what lacks, half of it on either side; holds between rows of cells that are alike. A polygon uses neither.
+    Raises GeometryError for an unknown kind or a negative width; the gap is checked where the size of the cell is
+    known.
     """
 
     kind: str | Polygon
     cg: float = 0.2
+    least_beam: float = 0.0
 
     def __post_init__(self) -> None:
         kind_of(self.kind)
+        if self.least_beam != 0.0:
+            finite_length("least_beam", self.least_beam)
 
 
 @dataclass(frozen=True)
@@ -81,20 +87,22 @@ def cell_map(segments: Sequence[Segment], *, blend: int = 0) -> Map:
     return tuple(rows)
 
 
-def halves(along: int, around: int, cg: float = 0.2, *, reentrant: int | None = None) -> Map:
+def halves(along: int, around: int, cg: float = 0.2, *, reentrant: int | None = None, least_beam: float = 0.0) -> Map:
     """Return the map of a bending skin: `reentrant` columns (default: half), side by side, the others honeycomb."""
     count = around // 2 if reentrant is None else reentrant
     if not 0 <= count <= around:
         raise GeometryError(f"halves: reentrant = {count!r}: expected 0 to {around} columns")
-    runs = ((count, Cell("re-entrant", cg)), (around - count, Cell("honeycomb", cg)))
+    soft, stiff = Cell("re-entrant", cg, least_beam), Cell("honeycomb", cg, least_beam)
+    runs = ((count, soft), (around - count, stiff))
     return cell_map([Segment(along, tuple(run for run in runs if run[0]))])
 
 
 def _between(first: Cell, last: Cell, share: float) -> Cell:
     if first == last:
         return first
+    least = first.least_beam + share * (last.least_beam - first.least_beam)
     if first.kind == last.kind and not isinstance(first.kind, Polygon):
-        return replace(first, cg=first.cg + share * (last.cg - first.cg))
+        return replace(first, cg=first.cg + share * (last.cg - first.cg), least_beam=least)
     sides = {"re-entrant": -1.0, "honeycomb": 1.0}
     if first.kind not in sides or last.kind not in sides:
         raise GeometryError(
@@ -103,4 +111,4 @@ def _between(first: Cell, last: Cell, share: float) -> Cell:
         )
     a, b = (sides[str(cell.kind)] * (BRICK - cell.cg) for cell in (first, last))
     distance = a + share * (b - a)
-    return Cell("re-entrant" if distance < 0.0 else "honeycomb", BRICK - abs(distance))
+    return Cell("re-entrant" if distance < 0.0 else "honeycomb", BRICK - abs(distance), least)

@@ -111,7 +111,7 @@ class Lattice:
         chains = []
         for number in range(2):
             left_chain, right_chain = (
-                kind_of(cell.kind).outline(self.width, self.height, self.beam, cell.cg)[number]
+                kind_of(cell.kind).outline(self.width, self.height, self.beam, cell.cg, cell.least_beam)[number]
                 for cell in (left, right)
             )
             first, last = halved(left_chain)[0], halved(right_chain)[1]

@@ -34,10 +34,13 @@ class Profile:
         """Always True."""
         return True
 
-    def outline(self, width: float, height: float, beam: float, cg: float) -> tuple[Array, Array]:
+    def outline(self, width: float, height: float, beam: float, cg: float, least: float = 0.0) -> tuple[Array, Array]:
         """Return the upper and the lower chain (k, 2) of corners about the centre of the hole, from left to right, mm.
 
-        Raises GeometryError for a gap beyond the cell.
+        least: width below which the beam between two rows of such holes does not go, mm: both chains are moved inwards
+            by what it lacks; 0 leaves them as they are.
+
+        Raises GeometryError for a gap beyond the cell, or a beam that leaves no hole.
         """
         if not 0.0 < cg <= BRICK:
             raise GeometryError(
@@ -47,8 +50,26 @@ class Profile:
         right = np.array(
             [[0.5 * x * (width - beam), p * height + q * cg * height] for x, p, q in self.half], dtype=np.float64
         )
+        right[:, 1] -= self._missing(right, width, height, least) / 2.0
+        if right[:, 1].min() <= 0.0:
+            raise GeometryError(
+                f"lattice: least_beam = {least:g} mm leaves no hole in a {self.name} cell of height {height:.4g} mm, "
+                f"cg = {cg:g}: expected less"
+            )
         upper = np.vstack([right[:0:-1] * [-1.0, 1.0], right])
         return upper, upper * [1.0, -1.0]
+
+    @staticmethod
+    def _missing(right: Array, width: float, height: float, least: float) -> float:
+        """Return the height along y that the beam between two rows lacks, mm, 0 where it is wide enough.
+
+        right (k, 2): half height over x, one straight side; its line and that of the next row, h / 2 above and shifted
+        by w / 2, are parallel.
+        """
+        (x, middle), (end, side) = right[0], right[-1]
+        slope = (side - middle) / (end - x)
+        tall = height / 2.0 - 2.0 * middle - slope * width / 2.0
+        return float(max(0.0, least * math.hypot(1.0, slope) - tall)) if least > 0.0 else 0.0
 
 
 @dataclass(frozen=True)
@@ -106,7 +127,7 @@ class Polygon:
             for chain in self._chains
         )
 
-    def outline(self, width: float, height: float, beam: float, cg: float) -> tuple[Array, Array]:
+    def outline(self, width: float, height: float, beam: float, cg: float, least: float = 0.0) -> tuple[Array, Array]:
         """Return the upper and the lower chain (k, 2) about the centre, from left to right, mm; no beam, no cg."""
         upper, lower = self._chains
         return upper * [width, height], lower * [width, height]
