@@ -15,7 +15,7 @@ from pneumorph.exchange.step import step_text
 from pneumorph.exchange.surface import Surface
 from pneumorph.geometry import ThickSphere
 from pneumorph.materials import NeoHookean
-from pneumorph.mechanics import Block, Cavity, Clamp, Contact, HalfSpace, Model, Motion, Symmetry
+from pneumorph.mechanics import Block, Cavity, Clamp, Contact, FreeBody, HalfSpace, Model, Motion, Symmetry
 from pneumorph.mechanics.body import cell_volumes
 from pneumorph.mechanics.fields import deformation_gradient
 from pneumorph.mechanics.state import rest
@@ -179,5 +179,12 @@ def test_rigid_bodies_are_written_where_a_state_has_them(tmp_path):
     assert written.counts == {"bodies": 2, "triangles": 14}
     points = meshio.read(tmp_path / "bodies.stl").points
     assert np.unique(points[:, 2].round(6)) == pytest.approx([-0.5, 0.6, 1.5])
+    free = FreeBody("brick", Block((3.0, 0.0, 0.0), (4.0, 1.0, 1.0)), mass=1e-6)
+    model = replace(model, free_bodies=(free,), contacts=(Contact("side", ("x1",), ("brick",)),))
+    moved = np.zeros_like(model.mesh.points)
+    moved[model.mesh.frames["brick"]] = (0.0, 0.0, 5.0)
+    written = write_bodies(tmp_path / "free.stl", model, replace(rest(model), displacement=moved))
+    assert written.counts == {"bodies": 1, "triangles": 12}
+    assert np.unique(meshio.read(tmp_path / "free.stl").points[:, 2]) == pytest.approx([5.0, 6.0])
     with pytest.raises(InputError, match="no rigid bodies: the model is 3d, with 0 of them"):
-        write_bodies(tmp_path / "none.stl", replace(model, contacts=()))
+        write_bodies(tmp_path / "none.stl", replace(model, free_bodies=(), contacts=()))

@@ -36,17 +36,20 @@ def write_bodies(path: str | Path, model: Model, state: State | None = None, *, 
     """
     mesh = model.mesh
     bodies = rigid_bodies(model.contacts)
-    if not bodies or mesh.dimension != 3:
-        raise InputError(f"no rigid bodies: the model is {mesh.space}, with {len(bodies)} of them; expected some in 3d")
+    count = len(bodies) + len(model.frames)
+    if not count or mesh.dimension != 3:
+        raise InputError(f"no rigid bodies: the model is {mesh.space}, with {count} of them; expected some in 3d")
     place = np.concatenate([mesh.points, mesh.points if state is None else state.positions])
     low, high = place.min(axis=0) - 0.1 * mesh.size, place.max(axis=0) + 0.1 * mesh.size
     values = {} if state is None else state.values
     parts = [outline(body, low, high, way_of(body, values)) for body in bodies.values()]
+    now = mesh.points if state is None else state.positions
+    parts += [(frame.surface(now), frame.facets) for frame in model.frames]
     first = np.cumsum([0, *(len(points) for points, _ in parts)])
     points = np.concatenate([points for points, _ in parts])
     triangles = np.concatenate([facets + start for (_, facets), start in zip(parts, first, strict=False)])
     put(path, lambda file: file.write_bytes(stl_bytes(points, triangles, title or "rigid bodies")))
-    return Written(Path(path), {"bodies": len(bodies), "triangles": len(triangles)})
+    return Written(Path(path), {"bodies": count, "triangles": len(triangles)})
 
 
 def write_step(

@@ -1,7 +1,18 @@
 """The solver: models, programmes and the load stepping that yields converged states."""
 
 from pneumorph.mechanics.cavity import Cavity
-from pneumorph.mechanics.contact import Block, Contact, Cylinder, HalfSpace, Motion, Pipe, SurfaceFile, Touch
+from pneumorph.mechanics.contact import (
+    Block,
+    Contact,
+    Cylinder,
+    FreeBody,
+    HalfSpace,
+    Motion,
+    Pipe,
+    Revolved,
+    SurfaceFile,
+    Touch,
+)
 from pneumorph.mechanics.continuation import march
 from pneumorph.mechanics.loads import Force, Gravity, Traction
 from pneumorph.mechanics.model import Model
@@ -22,8 +33,8 @@ from pneumorph.mechanics.supplies import (
 from pneumorph.mechanics.supports import Clamp, Prescribed, Roller, Symmetry
 
 __all__ = [
-    "Atmosphere", "Block", "Cavity", "Clamp", "Contact", "Cylinder", "Energies", "FlowSupply", "Force", "Gas",
-    "GasSupply", "Gravity", "HalfSpace", "Model", "Motion", "Phase", "Pipe", "Prescribed", "PressureSupply",
-    "Programme", "Roller", "SealedSupply", "Settings", "State", "Supply", "SurfaceFile", "Symmetry", "Touch",
-    "Traction", "Tube", "VolumeSupply", "march",
+    "Atmosphere", "Block", "Cavity", "Clamp", "Contact", "Cylinder", "Energies", "FlowSupply", "Force", "FreeBody",
+    "Gas", "GasSupply", "Gravity", "HalfSpace", "Model", "Motion", "Phase", "Pipe", "Prescribed", "PressureSupply",
+    "Programme", "Revolved", "Roller", "SealedSupply", "Settings", "State", "Supply", "SurfaceFile", "Symmetry",
+    "Touch", "Traction", "Tube", "VolumeSupply", "march",
 ]  # fmt: skip

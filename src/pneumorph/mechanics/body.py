@@ -11,6 +11,7 @@ from pneumorph.materials import Material
 from pneumorph.materials.material import PointLaw
 from pneumorph.materials.prony import ViscousStep
 from pneumorph.mechanics import kernels
+from pneumorph.mechanics.contact.rigidity import Rigidity
 from pneumorph.mechanics.pattern import Pattern
 from pneumorph.mechanics.tables import CellTable, cell_table
 from pneumorph.mechanics.volumetric import local_pressure, split_bulk
@@ -59,13 +60,18 @@ class Body:
 
     pressure: 'linear' (four modes in a solid cell, three in a plane one; discontinuous) or 'constant'.
     The pressure state is a list with one array (cells, modes) for each block of the mesh.
+    rigidity: of the frames of free bodies on the mesh; lists of stresses end with theirs.
     """
 
-    def __init__(self, mesh: Mesh, materials: dict[str, Material], pressure: str = "constant"):
+    def __init__(
+        self, mesh: Mesh, materials: dict[str, Material], pressure: str = "constant", rigidity: Rigidity | None = None
+    ):
         self.mesh = mesh
+        self.rigidity = rigidity
         self.dimension = mesh.dimension
         coupled = [block.nodes for block in mesh.blocks]
         coupled += [cap.nodes for blocks in mesh.caps.values() for cap in blocks]  # they join nodes of no common cell
+        coupled += [nodes[None] for nodes in mesh.frames.values()]
         self.pattern = Pattern.of_cells(len(mesh.points), self.dimension, coupled)
         self.unknowns = mesh.points.size
         self.tables = [cell_table(block.kind, pressure) for block in mesh.blocks]
@@ -136,6 +142,12 @@ class Body:
             total.values += part.values
             total.gains += part.gains
             total.stresses += part.stresses
+        if self.rigidity is not None:
+            self.rigidity.add_force(position, total.force)
+            if tangent:
+                stress = self.rigidity.stresses(position) if carried is None else carried[-1]
+                rows, columns, values = self.rigidity.tangent(position, stress)
+                np.add.at(total.values, self.pattern.places(rows, columns), values)
         return total
 
     def zero_memory(self) -> list[Array]:
@@ -185,7 +197,7 @@ class Body:
         return result
 
     def stresses(self, position: Array, memory: list[Array]) -> list[Array]:
-        """Return S and U'(J) (cells, q, 7) of each block in a state, MPa, without the pressure modes."""
+        """Return S and U'(J) (cells, q, 7) of each block in a state, MPa, without pressure modes; then frames' S."""
         result = self._room()
         for piece in (piece for team in self._teams for piece in team):
             c, ratio, _ = self._deformation(piece, position)
@@ -193,6 +205,8 @@ class Body:
             if piece.material.prony is not None:
                 stress = stress + memory[piece.block][1:, piece.part].sum(axis=0).reshape(-1, 6)
             result[piece.block][piece.part] = _with_local(piece, stress, ratio)
+        if self.rigidity is not None:
+            result.append(self.rigidity.stresses(position))
         return result
 
     def _room(self) -> list[Array]:
@@ -215,6 +229,8 @@ class Body:
                 result[piece.block][piece.part] = carried
 
         parallel(work, jobs)
+        if self.rigidity is not None:
+            result.append(self.rigidity.carried(position, step))
         return result
 
     def energies(self, position: Array, pressure: list[Array]) -> tuple[float, float]:
@@ -234,7 +250,8 @@ class Body:
             return total
 
         condensed, mixed = np.sum(parallel(work, self._teams), axis=0)
-        return float(condensed), float(mixed)
+        stiff = self.rigidity.energy(position) if self.rigidity is not None else 0.0
+        return float(condensed) + stiff, float(mixed) + stiff
 
     def smallest_volume_ratio(self, position: Array, fine: bool) -> float:
         """Return the smallest det F at the quadrature points or, `fine`, at those of a finer rule."""

@@ -111,6 +111,7 @@ def principal_stretches(gradient: Array) -> Array:
 def to_nodes(mesh: Mesh, parts: list[BlockFields], of: Callable[[BlockFields], Array]) -> Array:
     """Return a field averaged to the nodes (nodes, ...), nan where none of the blocks in `parts` has a cell.
 
+    It is zero on the nodes that carry free rigid bodies.
     of: takes the fields of a block, gives (cells, q, ...). In each cell it is continued linearly (least squares) from
     the quadrature points to the nodes; cells that meet at a node are weighted by their volumes. Leave out blocks of
     other domains where the field jumps between materials.
@@ -129,6 +130,7 @@ def to_nodes(mesh: Mesh, parts: list[BlockFields], of: Callable[[BlockFields], A
         raise ValueError("parts: expected at least one block")
     with np.errstate(invalid="ignore", divide="ignore"):
         averaged: Array = total / weight.reshape(-1, *[1] * (total.ndim - 1))
+    averaged[mesh.solid :] = 0.0
     return averaged
 
 

@@ -34,8 +34,16 @@ class Gravity:
     name: str = "gravity"
     kind: ClassVar[str] = "acceleration"
 
+    def weights(self, mesh: Mesh, masses: Mapping[str, float]) -> Array:
+        """Return nodal forces (nodes * d,) on free bodies of given masses, tonne, for 1 mm/s2."""
+        mass = np.zeros(len(mesh.points))
+        for name, value in masses.items():
+            nodes = mesh.frames[name]
+            mass[nodes] = value / len(nodes)  # the frame's centre is that of mass
+        return np.outer(mass, _unit(self.direction, mesh, f"gravity '{self.name}'")).ravel()
+
     def pattern(self, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
-        """Return nodal forces (nodes * d,) for an acceleration of 1 mm/s2."""
+        """Return nodal forces (nodes * d,) on the cells for an acceleration of 1 mm/s2."""
         direction = _unit(self.direction, mesh, f"gravity '{self.name}'")
         densities = {name: density_of(material, name, "gravity") for name, material in materials.items()}
         mass = lumped_mass(mesh, densities, False)
@@ -58,7 +66,10 @@ class Traction:
 
 @dataclass(frozen=True)
 class Force:
-    """A force spread evenly over the reference area of a face; the programme sets its size in N."""
+    """A force spread evenly over the reference area of a face, or at the centre of mass of a free body.
+
+    The programme sets its size in N.
+    """
 
     face: str
     direction: tuple[float, ...]
@@ -67,7 +78,11 @@ class Force:
 
     def pattern(self, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
         """Return nodal forces (nodes * d,) for a force of 1 N."""
-        areas = _areas(mesh, self.face)
+        if self.face in mesh.frames:
+            areas = np.zeros(len(mesh.points))
+            areas[mesh.frames[self.face]] = 1.0
+        else:
+            areas = _areas(mesh, self.face)
         return np.outer(areas / areas.sum(), _unit(self.direction, mesh, f"force '{self.name}'")).ravel()
 
 

@@ -14,6 +14,7 @@ from pneumorph.mechanics.model import Model
 from pneumorph.mechanics.tables import mass_rule
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 
 class Mass:
@@ -37,8 +38,16 @@ class Mass:
             same = first == second
             self._own += np.bincount(first[same], share[same], nodes)
             first, second, share = first[~same], second[~same], share[~same]
-            keys = np.minimum(first, second) * nodes + np.maximum(first, second)
-            self._shared += np.bincount(np.searchsorted(self._pattern.keys, keys), share, len(self._shared))
+            self._share(first, second, share)
+        for frame in model.frames:
+            a, b = np.triu_indices(len(frame.nodes), 1)
+            self._own[frame.nodes] += np.diag(frame.matrix)
+            self._share(frame.nodes[a], frame.nodes[b], frame.matrix[a, b])
+
+    def _share(self, first: Integers, second: Integers, share: Array) -> None:
+        """Add what pairs of neighbours (n,) have in common."""
+        keys = np.minimum(first, second) * self._pattern.nodes + np.maximum(first, second)
+        self._shared += np.bincount(np.searchsorted(self._pattern.keys, keys), share, len(self._shared))
 
     def times(self, vectors: Array) -> Array:
         """Return M x (nodes, d) of nodal vectors (nodes, d)."""

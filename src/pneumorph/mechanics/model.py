@@ -13,8 +13,11 @@ from pneumorph.errors import InputError, MeshError, NameNotFoundError, unknown_n
 from pneumorph.materials import Material
 from pneumorph.mechanics.body import Body, cell_volumes
 from pneumorph.mechanics.cavity import Cavity, CavitySurface
-from pneumorph.mechanics.contact import Contact, Contacts, Motion
-from pneumorph.mechanics.loads import Load, lumped_mass
+from pneumorph.mechanics.contact import Contact, Contacts, Frame, FreeBody, Motion
+from pneumorph.mechanics.contact.apart import body_of_nodes
+from pneumorph.mechanics.contact.free_body import with_frames
+from pneumorph.mechanics.contact.rigidity import STIFFER, Rigidity
+from pneumorph.mechanics.loads import Gravity, Load, lumped_mass
 from pneumorph.mechanics.supplies import Atmosphere, Supply, Tube
 from pneumorph.mechanics.supplies.checks import check_tubes
 from pneumorph.mechanics.supports import Prescribed, Support
@@ -27,7 +30,7 @@ Array = NDArray[np.float64]
 class Model:
     """What is solved.
 
-    mesh:      cells and named faces.
+    mesh:      cells and named faces; the model adds nodes for its free bodies to it.
     materials: domain -> material, one for each domain of the mesh.
     supports:  clamps, rollers, symmetry planes and prescribed displacements; together they must hold the body.
     loads:     gravity, tractions and forces.
@@ -35,10 +38,11 @@ class Model:
     tubes:     tubes between cavities filled with gas.
     atmosphere: pressure and temperature outside, and the gas.
     contacts:  what may touch what; with any, supports need not hold the body.
+    free_bodies: rigid bodies with mass; contacts, loads and supports name them like faces.
     pressure:  'constant' or 'linear' pressure modes in each cell (see `mechanics.volumetric`).
 
     Raises InputError for a domain without material or unknown, names given twice, a body that is free to move,
-    surfaces in contact that intersect;
+    surfaces in contact that intersect, a free body without a closed surface or that no contact names;
     MeshError for cells turned inside out or nodes without a cell; LeakingCavityError for an open cavity.
     """
 
@@ -51,6 +55,7 @@ class Model:
     tubes: tuple[Tube, ...] = field(default=(), kw_only=True)
     atmosphere: Atmosphere = field(default=Atmosphere(), kw_only=True)
     contacts: tuple[Contact, ...] = field(default=(), kw_only=True)
+    free_bodies: tuple[FreeBody, ...] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
         if self.pressure not in ("linear", "constant"):
@@ -61,7 +66,11 @@ class Model:
         for domain in self.mesh.domains:
             if domain not in self.materials:
                 raise InputError(f"no material for the domain '{domain}' of the mesh")
-        names = [item.name for item in (*self.loads, *self.cavities, *self._moved)]
+        object.__setattr__(self, "mesh", with_frames(self.mesh, self.free_bodies)[0])
+        for contact in self.contacts:
+            if contact.body in self.mesh.frames:
+                raise InputError(f"contact '{contact.name}': '{contact.body}' is a free body; name it among faces")
+        names = [item.name for item in (*self.loads, *self.cavities, *self._moved, *self.free_bodies)]
         names += [*self.obstacles, *(contact.name for contact in self.contacts)]
         for name in names:
             if names.count(name) > 1:
@@ -69,12 +78,13 @@ class Model:
                     f"the name '{name}' is given to {names.count(name)} loads, cavities, displacements or contacts"
                 )
         self._check_mesh()
-        if not self.contacts:  # friction and walls hold, too, but only once there is contact
-            self._check_held()
-        for load in self.loads:
-            load.pattern(self.mesh, self.materials)
+        self._check_held()
+        _ = self.load_patterns
         _ = self.surfaces
         _ = self.contact
+        for body in self.free_bodies:
+            if not any(body.name in (*c.faces, *c.other_faces) for c in self.contacts):
+                raise InputError(f"free body '{body.name}': no contact has it among its faces or against them")
         check_tubes(self.tubes, self.supplies)
 
     @property
@@ -102,7 +112,8 @@ class Model:
     @cached_property
     def contact(self) -> Contacts:
         """The contacts at work."""
-        return Contacts(self.mesh, self.contacts, min(item.shear_modulus for item in self.materials.values()))
+        softest = min(item.shear_modulus for item in self.materials.values())
+        return Contacts(self.mesh, self.contacts, softest, self.frames)
 
     @cached_property
     def supplies(self) -> dict[str, Supply]:
@@ -112,7 +123,14 @@ class Model:
     @cached_property
     def body(self) -> Body:
         """Elements and sparsity pattern."""
-        return Body(self.mesh, dict(self.materials), self.pressure)
+        stiffest = max(item.shear_modulus for item in self.materials.values())
+        rigidity = Rigidity(self.frames, STIFFER * stiffest) if self.frames else None
+        return Body(self.mesh, dict(self.materials), self.pressure, rigidity)
+
+    @cached_property
+    def frames(self) -> tuple[Frame, ...]:
+        """The free bodies on the mesh, in their order."""
+        return with_frames(self.mesh, self.free_bodies)[1]
 
     @cached_property
     def surfaces(self) -> dict[str, CavitySurface]:
@@ -124,6 +142,13 @@ class Model:
         """Unknowns with a given displacement, sorted, each once."""
         sets = [s.driven(self.mesh) if isinstance(s, Prescribed) else s.held(self.mesh) for s in self.supports]
         return np.unique(np.concatenate(sets)) if sets else np.empty(0, dtype=np.int64)
+
+    @property
+    def loose_bodies(self) -> tuple[str, ...]:
+        """Names of the free bodies that supports leave free to move in some direction."""
+        d, held = self.mesh.dimension, self.held
+        unknowns = {frame.name: (d * frame.nodes[:, None] + np.arange(d)).ravel() for frame in self.frames}
+        return tuple(name for name, own in unknowns.items() if not np.isin(own, held).all())
 
     def prescribed(self, values: Mapping[str, float]) -> Array:
         """Return the displacement (nodes * d,) that supports give: zero, or what `values` (mm) say by name."""
@@ -138,7 +163,12 @@ class Model:
     @cached_property
     def load_patterns(self) -> dict[str, Array]:
         """Name -> nodal forces (nodes * d,) of each load at the value 1."""
-        return {load.name: load.pattern(self.mesh, self.materials) for load in self.loads}
+        patterns = {}
+        for load in self.loads:
+            patterns[load.name] = load.pattern(self.mesh, self.materials)
+            if isinstance(load, Gravity):
+                patterns[load.name] += load.weights(self.mesh, {f.name: f.mass for f in self.frames})
+        return patterns
 
     @cached_property
     def unit_mass(self) -> Array:
@@ -146,7 +176,7 @@ class Model:
         return lumped_mass(self.mesh, dict.fromkeys(self.mesh.domains, 1.0))
 
     def _check_mesh(self) -> None:
-        used = np.zeros(len(self.mesh.points), dtype=bool)
+        used = np.zeros(self.mesh.solid, dtype=bool)
         for block in self.mesh.blocks:
             used[block.nodes] = True
             volumes = cell_volumes(self.mesh, block)
@@ -158,16 +188,26 @@ class Model:
             raise MeshError(f"{int((~used).sum())} nodes belong to no cell")
 
     def _check_held(self) -> None:
-        """Every rigid motion must move a held unknown."""
+        """Every rigid motion of every body must move a held unknown."""
         modes, names = _rigid_modes(self.mesh)
-        held = modes[self.held]
-        _, values, axes = (
-            np.linalg.svd(held, full_matrices=True) if len(held) else (None, np.zeros(0), np.eye(len(names)))
-        )
-        rank = int(np.sum(values > 1e-9 * max(1.0, values.max(initial=0.0))))
-        if rank < len(names):
-            free = names[int(np.argmax(np.abs(axes[rank])))]
-            raise InputError(f"the supports do not hold the body: it is free in {free}")
+        label = body_of_nodes(self.mesh)
+        # friction and walls hold, too, but only once there is contact
+        touching = [face for contact in self.contacts for face in (*contact.faces, *contact.other_faces)]
+        touched = {int(label[self.mesh.face_nodes(face)[0]]) for face in touching if face in self.mesh.faces}
+        owner = label[self.held // self.mesh.dimension]
+        domains = {int(label[block.nodes[0, 0]]): block.domain for block in reversed(self.mesh.blocks)}
+        for body, domain in domains.items():
+            if body in touched:
+                continue
+            held = modes[self.held[owner == body]]
+            _, values, axes = (
+                np.linalg.svd(held, full_matrices=True) if len(held) else (None, np.zeros(0), np.eye(len(names)))
+            )
+            rank = int(np.sum(values > 1e-9 * max(1.0, values.max(initial=0.0))))
+            if rank < len(names):
+                free = names[int(np.argmax(np.abs(axes[rank])))]
+                which = "the body" if len(domains) == 1 else f"the body of '{domain}'"
+                raise InputError(f"the supports do not hold {which}: it is free in {free}")
 
 
 def _rigid_modes(mesh: Mesh) -> tuple[Array, tuple[str, ...]]:

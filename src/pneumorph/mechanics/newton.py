@@ -118,6 +118,9 @@ class Newton:
                 trial, factors, before = origin, None, np.inf
                 continue
             if converged:
+                crossing = self._contact.crossing(position, trial.ways)
+                if crossing is not None:
+                    raise IncrementFailedError(crossing)
                 ratio = self.model.body.smallest_volume_ratio(position, fine=True)
                 gas = supplies.gas(trial.pressure, volumes)
                 flow_error = supplies.error(trial.pressure, volumes) / settings.flow_accuracy
@@ -137,13 +140,19 @@ class Newton:
                 raise IncrementFailedError(f"the residual grew to {error:.2g} of the applied forces")
             if factors is None:
                 tangent = self._tangent(assembly, position, trial.pressure, increment.drag)
-                tangent, touch = self._touching.tangent(tangent, position, trial.ways, rubbing, error < _NEAR)
+                exact = error < _NEAR
+                without = tangent.copy() if self._contact and exact else tangent
+                tangent, touch = self._touching.tangent(tangent, position, trial.ways, rubbing, exact)
                 tangent[self._diagonal] += shift.relaxed(error)
                 factors, gain = self._factorise(tangent, gradients, equations.softness, move, touch), 1e-2
                 modes = modes if shift else factors.unstable_modes
                 while shift.wanted(factors.unstable_modes):
                     factors = self._shifted(factors, tangent, shift.raised(), gradients, equations.softness)
                 unstable = factors.unstable_modes
+                if unstable and self._contact and exact:
+                    # steps by an indefinite tangent go to and fro about a fold in contact; this one goes past it
+                    tangent, touch = self._touching.tangent(without, position, trial.ways, rubbing, False)
+                    factors = self._factorise(tangent, gradients, equations.softness, move, touch)
             else:
                 gain = 1e-1
             pulled = residual + factors.touching.coupling @ dw

@@ -70,6 +70,13 @@ class Pattern:
         rank = np.searchsorted(self.keys, low * self.nodes + high) - self.start[low]
         return rank.reshape(len(cells), -1).astype(np.int32)
 
+    def places(self, rows: Integers, columns: Integers) -> Integers:
+        """Return where entries (rows <= columns) stand among the values; their nodes must be neighbours."""
+        d = self.dimension
+        first, second = rows // d, columns // d
+        rank = np.searchsorted(self.keys, first * self.nodes + second) - self.start[first]
+        return self.indptr[rows] + np.where(first == second, columns - rows, d - rows % d + d * rank + columns % d)
+
     def touching(self, unknowns: Integers) -> Integers:
         """Return the positions of all values in the rows and columns of some unknowns."""
         marked = np.zeros(self.nodes * self.dimension, dtype=bool)

@@ -83,6 +83,13 @@ class Programme:
                     raise NameNotFoundError(f"phase '{phase.name}': " + unknown_name("target", name, model.kinds))
         if any(phase.inertia for phase in self.phases):
             densities_of(model)
+        for body in model.loose_bodies:
+            for phase in self.phases:
+                if phase.inertia is None:
+                    raise InputError(
+                        f"phase '{phase.name}': nothing holds the free body '{body}' without inertia; give the phase a "
+                        "duration and inertia ('quasi-static' brings it to rest)"
+                    )
         for name in model.kinds:
             if name not in driven and name not in model.surfaces:
                 raise InputError(f"'{name}' is in the model, but no phase drives it")

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumorph.mechanics.contact import Touch
+from pneumorph.errors import NameNotFoundError, unknown_name
+from pneumorph.mechanics.contact import BodyMotion, Touch
+from pneumorph.mechanics.contact.body_motion import motion_of
 from pneumorph.mechanics.model import Model
 from pneumorph.mechanics.supplies import Gas
 from pneumorph.mechanics.supplies.network import gas_at_rest
@@ -100,6 +102,13 @@ class State:
     def positions(self) -> Array:
         """Deformed nodes (nodes, d), mm."""
         return self.model.mesh.points + self.displacement
+
+    def body_motion(self, name: str) -> BodyMotion:
+        """Return where a free body is and how it moves; raises NameNotFoundError for an unknown one."""
+        frames = {frame.name: frame for frame in self.model.frames}
+        if name not in frames:
+            raise NameNotFoundError(unknown_name("free body", name, frames))
+        return motion_of(frames[name], self.positions, self.velocity)
 
     def temperature(self, cavity: str) -> float:
         """Return the temperature of the gas in a cavity, K; raises KeyError where it holds none."""

@@ -178,6 +178,8 @@ def columns(model: Model, programme: Programme, measures: Sequence[Measure]) -> 
                 for face, a in parts
             ]
     result += [Column(f"body_force_{a}:{body}", f"force {a} on {body}", "force") for body in model.bodies for a in axes]
+    for frame in model.frames:
+        result += _body_columns(frame.name, axes)
     for measure in measures:
         printed_unit(measure.kind)
         result.append(Column(measure.name, measure.name.replace("_", " "), measure.kind))
@@ -236,6 +238,8 @@ def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
         forces = [state.touches.get(name, NO_TOUCH).force or (0.0,) * dimension for name in names]
         total = tuple(-sum(parts) for parts in zip(*forces, strict=True))
         result |= _vector(f"body_force_{{}}:{body}", total, dimension)
+    for frame in state.model.frames:
+        result |= _body_row(state, frame.name)
     result |= {measure.name: float(measure(state)) for measure in measures}
     return result | {
         "strain_energy": energies.strain,
@@ -251,6 +255,29 @@ def row(state: State, measures: Sequence[Measure]) -> dict[str, Any]:
         "unstable_modes": math.nan if state.unstable_modes is None else state.unstable_modes,
         "smallest_volume_ratio": state.smallest_volume_ratio,
     }
+
+
+def _body_columns(name: str, axes: Sequence[str]) -> list[Column]:
+    """Return the columns of a free body; turned about z alone in the plane."""
+    result = [Column(f"body_{a}:{name}", f"centre {a} of {name}", "length") for a in axes]
+    result += [Column(f"body_velocity_{a}:{name}", f"velocity {a} of {name}", "speed") for a in axes]
+    result += [
+        Column(f"body_rotation_{a}:{name}", f"rotation of {name} about {a}", "angle")
+        for a in (axes if len(axes) == 3 else "z")
+    ]
+    result += [Column(f"body_force_{a}:{name}", f"force {a} of contacts on {name}", "force") for a in axes]
+    return [*result, Column(f"body_strain:{name}", f"largest strain of {name}", "number")]
+
+
+def _body_row(state: State, name: str) -> dict[str, float]:
+    motion, d = state.body_motion(name), state.model.mesh.dimension
+    forces = [touch.by_face[name] for touch in state.touches.values() if name in touch.by_face]
+    turned = motion.rotation.tolist()
+    result = _vector(f"body_{{}}:{name}", motion.centre.tolist(), d)
+    result |= _vector(f"body_velocity_{{}}:{name}", motion.velocity.tolist(), d)
+    result |= _vector(f"body_rotation_{{}}:{name}", turned, d) if d == 3 else {f"body_rotation_z:{name}": turned[0]}
+    result |= _vector(f"body_force_{{}}:{name}", [sum(parts) for parts in zip(*forces, strict=True)], d)
+    return result | {f"body_strain:{name}": motion.strain}
 
 
 def _vector(key: str, values: Sequence[float], dimension: int) -> dict[str, float]:

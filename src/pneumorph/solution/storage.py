@@ -156,7 +156,7 @@ class StoredStates(Sequence[State]):
 
 def describe(model: Model) -> dict[str, Any]:
     """Return everything of a model but its mesh, encoded."""
-    return {
+    result = {
         "materials": encode(model.materials, "materials"),
         "supports": encode(model.supports, "supports"),
         "loads": encode(model.loads, "loads"),
@@ -166,6 +166,9 @@ def describe(model: Model) -> dict[str, Any]:
         "atmosphere": encode(model.atmosphere, "atmosphere"),
         "contacts": encode(model.contacts, "contacts"),
     }
+    if model.free_bodies:
+        result["free_bodies"] = encode(model.free_bodies, "free_bodies")
+    return result
 
 
 def digest(mesh: Mesh) -> str:

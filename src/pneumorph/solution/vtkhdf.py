@@ -59,6 +59,7 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
                     "blocks": [[block.kind, block.domain, len(block.nodes)] for block in mesh.blocks],
                     "faces": {name: [block.kind for block in blocks] for name, blocks in mesh.faces.items()},
                     "caps": {name: [block.kind for block in blocks] for name, blocks in mesh.caps.items()},
+                    "frames": {name: nodes.tolist() for name, nodes in mesh.frames.items()},
                 }
             )
             for group, named in (("faces", mesh.faces), ("caps", mesh.caps)):
@@ -90,7 +91,8 @@ def read_mesh(path: Path) -> Mesh:
             }
             for group in ("faces", "caps")
         )
-        return Mesh(points, tuple(blocks), faces, about["space"], about["bending_walls"], caps)
+        frames = {name: np.array(nodes, dtype=np.int64) for name, nodes in about.get("frames", {}).items()}
+        return Mesh(points, tuple(blocks), faces, about["space"], about["bending_walls"], caps, frames)
 
     return _read(path, "mesh", read)
 

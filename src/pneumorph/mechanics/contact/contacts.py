@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sparse
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
 from pneumorph.errors import InputError
+from pneumorph.mechanics.contact.apart import axis_text, check_apart, place_text, whole_bodies
 from pneumorph.mechanics.contact.definition import Contact
-from pneumorph.mechanics.contact.facets import force_points, nodal_areas, split
+from pneumorph.mechanics.contact.free_apart import check_free_apart
+from pneumorph.mechanics.contact.free_body import Frame
 from pneumorph.mechanics.contact.ipc import FacetContact, Surfaces
-from pneumorph.mechanics.contact.obstacles import HalfSpace, Pipe, direction, encloses
+from pneumorph.mechanics.contact.obstacles import HalfSpace, Pipe, direction
 from pneumorph.mechanics.contact.part import Entries, Part, Place, Touch
 from pneumorph.mechanics.contact.smooth import SmoothContact
-from pneumorph.mesh.mesh import FaceBlock, Mesh
-from pneumorph.mesh.topology import boundary
+from pneumorph.mechanics.contact.vertices import Vertices
+from pneumorph.mesh.mesh import Mesh
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+_FINER = 0.2  # share of a default reach for which the rest of it is given up, to keep creases from crossing
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,15 +53,15 @@ class Rubbing:
 class Contacts:
     """The contacts of a mesh; `ways` are the distances (contacts,), mm, that their obstacles have moved.
 
-    shear: smallest shear modulus of the model, MPa. Raises InputError for unknown faces, surfaces that intersect at
-    rest, a reach beyond a gap.
+    shear: smallest shear modulus of the model, MPa; frames: its free bodies. Raises InputError for unknown faces,
+    surfaces that intersect at rest, a reach beyond a gap, a free body in contact with itself.
     """
 
-    def __init__(self, mesh: Mesh, contacts: Sequence[Contact], shear: float):
+    def __init__(self, mesh: Mesh, contacts: Sequence[Contact], shear: float, frames: Sequence[Frame] = ()):
         self.mesh, self.contacts = mesh, tuple(contacts)
-        self.pairs = [_interaction(mesh, contact, shear) for contact in contacts]
+        self.vertices = Vertices(mesh, frames)
+        self.pairs = [_interaction(self.vertices, contact, shear) for contact in contacts]
         self._creep = [contact.creep or 1e-3 * mesh.size for contact in contacts]
-        self._areas = [nodal_areas(mesh, _blocks(mesh, contact.faces)) for contact in contacts]
 
     def __bool__(self) -> bool:
         return bool(self.contacts)
@@ -150,6 +152,14 @@ class Contacts:
         places = (Place(position, float(way)) for way in ways)
         return min(pair.distance(place) for pair, place in zip(self.pairs, places, strict=True))
 
+    def crossing(self, position: Array, ways: Array) -> str | None:
+        """Return which surfaces intersect, and where, as a clause; None where all are apart."""
+        for contact, pair, way in zip(self.contacts, self.pairs, ways, strict=True):
+            where = pair.intersection(Place(position, float(way)))
+            if where is not None:
+                return f"surfaces of contact {_pair(contact)} intersect at ({place_text(where)}) mm"
+        return None
+
     def near(self, position: Array, ways: Array) -> Integers:
         """Return pairs of nodes (k, 2) that may soon be coupled."""
         places = (Place(position, float(way)) for way in ways)
@@ -172,14 +182,14 @@ class Contacts:
             normal, *tangential = self._parts(i, position, ways, rubbing, False, True)
             push = -normal.gradient.reshape(-1, d)
             rub = -tangential[0].gradient.reshape(-1, d) if tangential else np.zeros_like(push)
-            left = self._areas[i] > 0.0
+            left = np.ones(len(push), dtype=bool)
             by_face = {}
-            for name in contact.faces:
-                nodes = np.unique(np.concatenate([b.nodes.ravel() for b in self.mesh.face_blocks(name)]))
+            for name in (*contact.faces, *(body.name for body in self.vertices.bodies(contact.other_faces))):
+                nodes = self.mesh.face_nodes(name)
                 nodes = nodes[left[nodes]]
                 left[nodes] = False  # a node on the rim of two faces counts once
                 by_face[name] = _numbers((push + rub)[nodes].sum(axis=0))
-            own = self._areas[i] > 0.0
+            own = self.vertices.nodes(contact.faces)
             area, pressure = self._bearing(i, Place(position, float(ways[i])), push)
             force, sideways = (push + rub)[own].sum(axis=0), rub[own].sum(axis=0)
             distance = pair.distance(Place(position, float(ways[i])))
@@ -188,14 +198,31 @@ class Contacts:
 
     def _bearing(self, i: int, place: Place, push: Array) -> tuple[float, float]:
         """Return the deformed area of the named faces within reach, mm2, and the largest pressure on it, MPa."""
-        pair, own = self.pairs[i], self._areas[i] > 0.0
-        blocks = _blocks(self.mesh, self.contacts[i].faces)
-        if isinstance(pair, SmoothContact):
-            return pair.bearing(place, force_points(self.mesh, blocks, place.position))
-        areas = nodal_areas(self.mesh, blocks, place.position)[own]
-        size = np.linalg.norm(push[own], axis=1)
-        bearing = size > 1e-9 * float(size.max())
-        return float(areas[bearing].sum()), float((size / areas).max())
+        pair, names, mesh = self.pairs[i], self.contacts[i].faces, self.mesh
+        found = self._bodies_bearing(pair, self.vertices.bodies(names), place)
+        faces = [name for name in names if name in mesh.faces]
+        if faces and isinstance(pair, SmoothContact):
+            found.append(pair.bearing(place, self.vertices.force_points(faces, place.position)))
+        elif faces:
+            areas = self.vertices.areas(faces, place.position)[: len(mesh.points)]
+            own = np.flatnonzero(areas)
+            size = np.linalg.norm(push[own], axis=1)
+            bearing = size > 1e-9 * float(size.max())
+            found.append((float(areas[own][bearing].sum()), float((size / areas[own]).max())))
+        return sum(area for area, _ in found), max(pressure for _, pressure in found)
+
+    def _bodies_bearing(
+        self, pair: SmoothContact | FacetContact, bodies: Sequence[Frame], place: Place
+    ) -> list[tuple[float, float]]:
+        if not bodies:
+            return []
+        if isinstance(pair, SmoothContact):  # its last groups are those of the bodies
+            forces = pair.pressing(place)[-len(bodies) :]
+        else:
+            sizes = np.zeros(self.vertices.count)
+            sizes[pair.nodes] = np.linalg.norm(pair.forces(place), axis=1)
+            forces = [sizes[self.vertices.numbers(body.name)] for body in bodies]
+        return [self.vertices.bearing(body, force) for body, force in zip(bodies, forces, strict=True)]
 
 
 def _pair(contact: Contact) -> str:
@@ -206,51 +233,72 @@ def _numbers(values: Array) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
 
 
-def _blocks(mesh: Mesh, names: Sequence[str]) -> list[FaceBlock]:
-    return [block for name in names for block in mesh.face_blocks(name)]
+def _way_out(pair: SmoothContact, position: Array) -> str:
+    """Return in words the shift that takes a surface at nodes (nodes, d) out of its obstacle.
+
+    The deepest point is moved out along its normal until none is left: from a plane that is the smallest shift, in a
+    pipe, whose inside is convex, one near it.
+    """
+    shift = np.zeros(position.shape[1])
+    for _ in range(200):
+        gap, where = pair.worst(Place(position + shift))
+        if gap > 0.0:
+            size = float(np.linalg.norm(shift))
+            return f"move them apart by {size:.4g} mm along {axis_text(shift / size)}"
+        shift = shift + (pair.reach - gap) * pair.obstacle.gap(where[None])[1][0]
+    return "no shift takes them apart"
 
 
-def _interaction(mesh: Mesh, contact: Contact, shear: float) -> SmoothContact | FacetContact:
+def _interaction(vertices: Vertices, contact: Contact, shear: float) -> SmoothContact | FacetContact:
     """Return the pair of surfaces of a contact, checked at rest."""
+    mesh = vertices.mesh
     owner, d = f"contact '{contact.name}'", mesh.dimension
     if mesh.space == "axisymmetric" and contact.motion and contact.motion.direction[:1] not in ((0,), (0.0,)):
         raise InputError(f"{owner}: with axial symmetry an obstacle moves along the axis, direction (0, 1)")
     motion = contact.motion
     along = direction(motion.direction, d, f"motion '{motion.name}'", "direction") if motion else np.zeros(d)
-    stiffness = contact.stiffness or shear
+    stiffness = contact.stiffness or min(shear, vertices.resting((*contact.faces, *contact.other_faces)))
     reach = contact.reach or 1e-3 * mesh.size
-    blocks, against = _blocks(mesh, contact.faces), contact.against
+    against, free = contact.against, vertices.bodies((*contact.faces, *contact.other_faces))
+    if free and against is None:
+        raise InputError(f"{owner}: a free body does not touch itself; give what '{free[0].name}' may touch")
     if isinstance(against, HalfSpace | Pipe):
-        smooth = SmoothContact(force_points(mesh, blocks), against, along, reach, stiffness, contact.friction)
+        smooth = SmoothContact(vertices.force_points(contact.faces), against, along, reach, stiffness, contact.friction)
         gap, where = smooth.worst(Place(mesh.points))
         if gap <= 0.0:
             raise InputError(
-                f"{owner}: {', '.join(contact.faces)} and {contact.other} intersect at ({_show(where)}) mm; "
-                f"move them apart by {reach - gap:.4g} mm along {_axis(against.gap(where[None])[1][0])}"
+                f"{owner}: {', '.join(contact.faces)} and {contact.other} intersect at ({place_text(where)}) mm; "
+                f"{_way_out(smooth, mesh.points)}"
             )
         return smooth
     rigid, rigid_facets = np.empty((0, d)), np.empty((0, d), dtype=np.int64)
     sides = None
+    soft, areas = vertices.facets(contact.faces), vertices.areas(contact.faces)
     if isinstance(against, tuple):
-        other = _blocks(mesh, against)
-        sides = np.repeat([0, 1], [len(split(blocks)), len(split(other))])
-        blocks = blocks + other
-        shared = np.intersect1d(split(blocks[: len(blocks) - len(other)]), split(other))
+        other = vertices.facets(against)
+        sides = np.repeat([0, 1], [len(soft), len(other)])
+        shared = np.intersect1d(soft, other)
+        soft, areas = np.concatenate([soft, other]), vertices.areas((*contact.faces, *against))
         if len(shared):
             raise InputError(
                 f"{owner}: {', '.join(contact.faces)} and {', '.join(against)} share nodes; they must be apart"
             )
     elif against is not None:
         rigid, rigid_facets = against.facets(d)
-    surfaces = Surfaces(split(blocks), nodal_areas(mesh, blocks), sides, rigid, rigid_facets, along)
+    riders = vertices.carried(np.unique(soft))
+    surfaces = Surfaces(soft, areas, sides, rigid, rigid_facets, along, riders)
     pair = FacetContact(mesh.points, surfaces, reach, stiffness, contact.friction)
-    _check_apart(_bodies(mesh, surfaces), mesh, contact)
+    if free:
+        check_free_apart(vertices, surfaces, contact)
+    else:
+        check_apart(whole_bodies(mesh, surfaces), mesh, contact)
     if against is None or sides is not None:
         gap = pair.distance(Place(mesh.points), 5.0 * reach)
-        if against is None:  # where facets are large enough, the sides of a crease may meet, too
+        if against is None:  # unless facets are too small for it, the sides of a crease are kept apart, too
             finer = FacetContact(mesh.points, surfaces, reach, stiffness, contact.friction, rings=1)
-            if finer.distance(Place(mesh.points), 5.0 * reach) >= gap:
-                pair = finer
+            close = finer.distance(Place(mesh.points), 5.0 * reach)
+            if close >= min(gap, 2.0 * reach if contact.reach else _FINER * min(gap, 5.0 * reach)):
+                pair, gap = finer, close
         if contact.reach is None:
             pair.reach = min(reach, gap / 5.0)
         elif gap <= reach and against is None:
@@ -258,85 +306,3 @@ def _interaction(mesh: Mesh, contact: Contact, shear: float) -> SmoothContact | 
                 f"{owner}: reach = {reach:g} mm, allowed: less than the smallest gap at rest, {gap:.4g} mm"
             )
     return pair
-
-
-def _bodies(mesh: Mesh, surfaces: Surfaces) -> FacetContact:
-    """Return the contact of whole bodies: named faces may lie inside another body without crossing its named ones."""
-    skin = split(boundary(mesh.blocks))
-    sides = None
-    if surfaces.sides is not None:
-        label = _components(mesh)
-        first, second = (np.unique(label[surfaces.soft[surfaces.sides == side]]) for side in (0, 1))
-        here = label[skin[:, 0]]
-        if len(np.intersect1d(first, second)):  # two faces of one body
-            skin, sides = surfaces.soft, surfaces.sides
-        else:
-            skin = np.concatenate([skin[np.isin(here, first)], skin[np.isin(here, second)]])
-            sides = np.repeat([0, 1], [np.isin(here, first).sum(), np.isin(here, second).sum()])
-    elif not len(surfaces.rigid):
-        skin = surfaces.soft
-    whole = replace(surfaces, soft=skin, sides=sides, areas=np.ones(len(mesh.points)))
-    return FacetContact(mesh.points, whole, 1e-3 * mesh.size, 1.0, 0.0)
-
-
-def _components(mesh: Mesh) -> Integers:
-    """Return the number of the body (nodes,) that each node belongs to."""
-    ends = np.concatenate([np.stack([b.nodes[:, :-1].ravel(), b.nodes[:, 1:].ravel()], axis=1) for b in mesh.blocks])
-    links = sparse.coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(mesh.points),) * 2)
-    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
-
-
-def _check_apart(pair: FacetContact, mesh: Mesh, contact: Contact) -> None:
-    """Raise an InputError with the place, and the shift that helps, where surfaces intersect at rest."""
-    where, surfaces, against = pair.intersection(Place(mesh.points)), pair.surfaces, contact.against
-    if where is None and len(surfaces.rigid):
-        label = _components(mesh)
-        for body in np.unique(label[surfaces.soft]):
-            inside = mesh.points[np.flatnonzero(label == body)[0]]
-            if encloses(surfaces.rigid, surfaces.rigid_facets, inside):
-                raise InputError(
-                    f"contact '{contact.name}': the body with {', '.join(contact.faces)} lies inside the "
-                    f"{contact.other}, at ({_show(inside)}) mm"
-                )
-    if where is None:
-        return
-    one = ", ".join(contact.faces)
-    text = f"contact '{contact.name}': {one} and {contact.other} intersect at ({_show(where)}) mm"
-    if against is None:
-        raise InputError(f"{text}; the surface of the body must not cross itself")
-    raise InputError(f"{text}; {_shift(pair, mesh)}")
-
-
-def _shift(pair: FacetContact, mesh: Mesh) -> str:
-    """Return the smallest translation along a coordinate axis that takes the named faces free."""
-    best = (np.inf, np.zeros(mesh.dimension))
-    rigid = len(pair.surfaces.rigid) > 0
-    moving = pair.surfaces.soft if pair.surfaces.sides is None else pair.surfaces.soft[pair.surfaces.sides == 0]
-    nodes = np.unique(moving)
-    whole = max(mesh.size, float(np.ptp(pair.surfaces.rigid, axis=0).max()) if rigid else 0.0)
-    for axis in (*np.eye(mesh.dimension), *-np.eye(mesh.dimension)):
-
-        def apart(way: float, axis: Array = axis) -> bool:
-            position = mesh.points.copy()
-            position[nodes] += way * axis
-            return pair.distance(Place(position)) > 0.0
-
-        steps = whole * np.geomspace(1e-4, 2.0, 40)
-        free = next((k for k, way in enumerate(steps) if way < best[0] and apart(float(way))), None)
-        if free is not None:
-            low, high = (0.0 if free == 0 else float(steps[free - 1])), float(steps[free])
-            for _ in range(8):
-                middle = 0.5 * (low + high)
-                low, high = (low, middle) if apart(middle) else (middle, high)
-            best = (high, axis) if high < best[0] else best
-    if not np.isfinite(best[0]):
-        return "no shift along an axis takes them apart"
-    return f"the smallest shift along an axis that takes the faces free is {best[0]:.4g} mm along {_axis(best[1])}"
-
-
-def _axis(axis: Array) -> str:
-    return "(" + ", ".join(f"{x + 0.0:.4g}" for x in axis) + ")"
-
-
-def _show(point: Array) -> str:
-    return ", ".join(f"{x:.4g}" for x in point)

@@ -13,16 +13,16 @@ class Contact:
     """Contact without penetration, with Coulomb friction.
 
     name:     how histories and reports call it.
-    faces:    names of the faces of the mesh that may touch.
-    against:  a rigid obstacle; or a tuple of other faces; or nothing: the faces touch themselves and each other. The
-              two sides of a wall are never in contact: name outer faces and those of each cavity in contacts of
-              their own.
+    faces:    names of the faces of the mesh, or of free bodies, that may touch.
+    against:  a rigid obstacle; or a tuple of other faces and free bodies; or nothing: the faces touch themselves and
+              each other. The two sides of a wall are never in contact: name outer faces and those of each cavity in
+              contacts of their own.
     friction: coefficient of Coulomb friction, 0 to 5.
     reach:    distance (mm) below which surfaces begin to push each other off, and an upper bound of the error of their
               places; default: a thousandth of the body's size, but at most a fifth of the smallest gap that a
               surface has with itself or another.
     stiffness: pressure (MPa) at which they are at about three quarters of the reach; default: the smallest shear
-              modulus of the model.
+              modulus of the model; between rigid bodies, at most what suits the weight of a free one.
     body:     name of the obstacle in messages, histories and pictures; default: its kind.
     creep:    speed (mm/s) below which friction holds, not to the full; default: a thousandth of the body's size per
               second. A phase without duration counts as one second.
@@ -52,6 +52,11 @@ class Contact:
         if isinstance(self.against, tuple) and set(self.against) & set(self.faces):
             twice = ", ".join(sorted(set(self.against) & set(self.faces)))
             raise InputError(f"{owner}: {twice} is on both sides; leave `against` out for contact with itself")
+
+    @property
+    def other_faces(self) -> tuple[str, ...]:
+        """The names of faces and free bodies in `against`."""
+        return self.against if isinstance(self.against, tuple) else ()
 
     @property
     def other(self) -> str:

@@ -36,7 +36,7 @@ _WEIGHTS = {
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Force points that are the same mixture of nodes: nodes (m, k), share (k,), weight (m,): mm2 for each.
+    """Force points that mix nodes: nodes (m, k), share (m, k), weight (m,): mm2 for each.
 
     In the plane strain of a body 1 mm thick, weight is a length times 1 mm; with axial symmetry the ring's area.
     """
@@ -75,9 +75,10 @@ def force_points(mesh: Mesh, blocks: Iterable[FaceBlock], position: Array | None
         count = block.nodes.shape[1]
         np.add.at(areas, block.nodes, weight[:, :count])
         if block.kind == "triangle6":
-            centres.append(Points(block.nodes, shape[count], weight[:, count]))
+            share = np.broadcast_to(shape[count], block.nodes.shape)
+            centres.append(Points(block.nodes, share, weight[:, count]))
     nodes = np.flatnonzero(areas)
-    return [Points(nodes[:, None], np.ones(1), areas[nodes]), *centres]
+    return [Points(nodes[:, None], np.ones((len(nodes), 1)), areas[nodes]), *centres]
 
 
 def nodal_areas(mesh: Mesh, blocks: Iterable[FaceBlock], position: Array | None = None) -> Array:

@@ -36,9 +36,11 @@ class FacetLag:
 class Surfaces:
     """What may collide: facets on the mesh, and rigid ones.
 
-    soft (m, d): facets on nodes of the mesh; sides (m,): number of the surface that each belongs to, pairs come from
-    different ones; None for a surface in contact with itself. areas (nodes,): what each node of the mesh bears, mm2.
+    soft (m, d): facets on nodes of the mesh, or on points that follow from them (see `Vertices`); sides (m,): number of
+    the surface that each belongs to, pairs come from different ones; None for a surface in contact with itself.
+    areas (vertices,): what each of them bears, mm2.
     rigid, rigid_facets: points (n, d) and facets of an obstacle; along (d,): direction in which it moves.
+    riders (k, nodes): how the k vertices of `soft`, sorted, each once, follow from nodes; None where they are nodes.
     """
 
     soft: Integers
@@ -47,6 +49,7 @@ class Surfaces:
     rigid: Array
     rigid_facets: Integers
     along: Array
+    riders: sparse.csr_matrix | None = None
 
 
 class FacetContact:
@@ -65,6 +68,10 @@ class FacetContact:
         self.surfaces, self.along = surfaces, surfaces.along
         self.reach, self.stiffness, self.coefficient = reach, stiffness, coefficient
         self._unknowns, self._dimension = rest.size, rest.shape[1]
+        self._own_unknowns = (self._dimension * self.nodes[:, None] + np.arange(self._dimension)).ravel()
+        self._lift: sparse.csr_matrix | None = None  # unknowns of the mesh -> those of the soft vertices
+        if surfaces.riders is not None:
+            self._lift = sparse.kron(surfaces.riders, sparse.eye(self._dimension), format="csr")
         soft = np.searchsorted(self.nodes, surfaces.soft)
         facets = np.concatenate([soft, surfaces.rigid_facets + len(self.nodes)]).astype(np.int32)
         vertices = self._vertices(Place(rest))
@@ -100,7 +107,8 @@ class FacetContact:
 
     def _vertices(self, place: Place) -> Array:
         rigid = self.surfaces.rigid + place.way * self.along
-        return np.asfortranarray(np.concatenate([place.position[self.nodes], rigid]))
+        soft = place.position[self.nodes] if self.surfaces.riders is None else self.surfaces.riders @ place.position
+        return np.asfortranarray(np.concatenate([soft, rigid]))
 
     def _collisions(self, vertices: Array, reach: float) -> Any:
         candidates = ipctk.Candidates()
@@ -149,7 +157,7 @@ class FacetContact:
     def limit(self, start: Place, end: Place) -> float:
         """Return the share, 0 to 1, of a straight way that keeps all distances above a part of the present ones."""
         before, after = self._vertices(start), self._vertices(end)
-        least = KEPT * min(self.distance(start), self.reach)
+        least = KEPT * min(self._gap(before, self.reach), self.reach)
         candidates = ipctk.Candidates()
         candidates.build(self._mesh, before, after, least)
         # tight inclusion takes seconds for a pair of parallel edges on a long way; this one is as conservative
@@ -162,7 +170,10 @@ class FacetContact:
         vertices = self._vertices(place)
         if ipctk.has_intersections(self._mesh, vertices):
             return 0.0
-        collisions = self._collisions(vertices, reach or self.reach)
+        return self._gap(vertices, reach or self.reach)
+
+    def _gap(self, vertices: Array, reach: float) -> float:
+        collisions = self._collisions(vertices, reach)
         return float(np.sqrt(collisions.compute_minimum_distance(self._mesh, vertices)))
 
     def intersection(self, place: Place) -> Array | None:
@@ -196,6 +207,13 @@ class FacetContact:
         matrix = self._potential(reach).hessian(collisions, self._mesh, vertices).tocoo()
         first, second = matrix.row // self._dimension, matrix.col // self._dimension
         soft = (first < second) & (second < len(self.nodes))
+        if self.surfaces.riders is not None:
+            carry = self.surfaces.riders.astype(bool).astype(float)
+            count = len(self.nodes)
+            pairs = sparse.coo_matrix((np.ones(soft.sum()), (first[soft], second[soft])), shape=(count, count))
+            coupled = (carry.T @ (pairs + pairs.T) @ carry).tocoo()
+            kept = coupled.row < coupled.col
+            return np.column_stack([coupled.row[kept], coupled.col[kept]]).astype(np.int64)
         return np.unique(self.nodes[np.column_stack([first[soft], second[soft]])], axis=0)
 
     def _nothing(self) -> Part:
@@ -205,20 +223,41 @@ class FacetContact:
     def _part(self, energy: float, gradient: Array, matrix: sparse.csc_matrix | None) -> Part:
         """Return what ipctk's vertices feel as felt by the nodes of the mesh and the obstacle."""
         d, soft = self._dimension, self._dimension * len(self.nodes)
-        unknowns = (d * self.nodes[:, None] + np.arange(d)).ravel()
-        total = np.zeros(self._unknowns)
-        total[unknowns] = gradient[:soft]
+        total = self._nodal(gradient[:soft])
         push = gradient[soft:].reshape(-1, d).sum(axis=0)
         coupling = np.zeros(self._unknowns)
         if matrix is None:
             return Part(energy, total, NO_ENTRIES, push, coupling)
         if len(self.surfaces.rigid):
             way = np.concatenate([np.zeros(soft), np.tile(self.along, len(self.surfaces.rigid))])
-            coupling[unknowns] = (matrix @ way)[:soft]
+            coupling = self._nodal((matrix @ way)[:soft])
+        if self._lift is not None:
+            lifted = (self._lift.T @ matrix[:soft, :soft] @ self._lift).tocoo()
+            rows, columns = lifted.row.astype(np.int64), lifted.col.astype(np.int64)
+            return Part(energy, total, upper(rows, columns, lifted.data), push, coupling)
         entries = matrix.tocoo()
+        unknowns = self._own_unknowns
         kept = (entries.row < soft) & (entries.col < soft)
         rows, columns = unknowns[entries.row[kept]], unknowns[entries.col[kept]]
         return Part(energy, total, upper(rows, columns, entries.data[kept]), push, coupling)
+
+    def _nodal(self, vector: Array) -> Array:
+        """Return what soft vertices feel (k * d,) as felt by the nodes of the mesh (unknowns,)."""
+        if self._lift is not None:
+            lifted: Array = self._lift.T @ vector
+            return lifted
+        result = np.zeros(self._unknowns)
+        result[self._own_unknowns] = vector
+        return result
+
+    def forces(self, place: Place) -> Array:
+        """Return the force of the barrier on each vertex of `nodes` (k, d), N."""
+        vertices = self._vertices(place)
+        collisions = self._collisions(vertices, self.reach)
+        if collisions.empty():
+            return np.zeros((len(self.nodes), self._dimension))
+        gradient = self._potential(self.reach).gradient(collisions, self._mesh, vertices)
+        return -np.asarray(gradient).reshape(-1, self._dimension)[: len(self.nodes)]
 
 
 def _crossing(edge: Array, facet: Array) -> Array:

@@ -152,6 +152,67 @@ class Cylinder:
 
 
 @dataclass(frozen=True)
+class Revolved:
+    """What a line makes that is turned about an axis: a cup, a bottle, a ball.
+
+    profile: its points, each with its distance from the axis and its height along it (mm), from the axis to the axis:
+        ends that do not lie on it are joined to it at their height. The line does not cross itself.
+    point:   where on the axis the height is 0; axis: direction of growing height.
+    segments: flats that stand for its round.
+
+    Raises InputError for fewer than two points or distances below 0.
+    """
+
+    profile: tuple[tuple[float, float], ...]
+    point: tuple[float, ...] = (0.0, 0.0, 0.0)
+    axis: tuple[float, ...] = (0.0, 0.0, 1.0)
+    segments: int = 48
+    motion: Motion | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        if len(self.profile) < 2:
+            raise InputError(f"revolved body: {len(self.profile)} points of its profile, allowed: 2 or more")
+        for item in self.profile:
+            radius, _ = vector(item, 2, "revolved body", "point of its profile")
+            if radius < 0.0:
+                raise InputError(f"revolved body: distance from the axis = {radius:g} mm, allowed: 0 or more")
+        if self.segments < 8:
+            raise InputError(f"revolved body: segments = {self.segments}, allowed: 8 or more")
+
+    def facets(self, dimension: int) -> tuple[Array, Integers]:
+        """Return points (n, 3) and triangles (m, 3), outward; raises InputError in the plane, or without a volume."""
+        if dimension != 3:
+            raise InputError("revolved body: a plane model meets blocks, cylinders and half-spaces only")
+        axis = direction(self.axis, 3, "revolved body", "axis")
+        first = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+        first /= np.linalg.norm(first)
+        angle = 2.0 * np.pi * (np.arange(self.segments) + 0.5) / self.segments
+        circle = np.outer(np.cos(angle), first) + np.outer(np.sin(angle), np.cross(axis, first))
+        line = np.asarray(self.profile, dtype=float)
+        ends = [(0.0, height) for radius, height in (line[0], line[-1]) if radius > 0.0]
+        if line[0, 0] > 0.0:
+            line = np.vstack([ends[:1], line])
+        if line[-1, 0] > 0.0:
+            line = np.vstack([line, ends[-1:]])
+        rings = [circle * radius + axis * height for radius, height in line]
+        points = vector(self.point, 3, "revolved body", "point") + np.concatenate(rings)
+        low = self.segments * np.arange(len(line) - 1)[:, None] + np.arange(self.segments)
+        after = low - np.arange(self.segments) + (np.arange(self.segments) + 1) % self.segments
+        high, beyond = low + self.segments, after + self.segments
+        corners = np.concatenate(
+            [np.stack(t, axis=-1).reshape(-1, 3) for t in ((low, after, beyond), (low, beyond, high))]
+        )
+        # points of a ring on the axis are one
+        _, kept, where = np.unique(np.round(points, 9), axis=0, return_index=True, return_inverse=True)
+        points, corners = points[kept], where.ravel()[corners]
+        corners = corners[[len(set(corner)) == 3 for corner in corners.tolist()]]
+        volume = float(np.linalg.det(points[corners] - points.mean(axis=0)).sum())
+        if abs(volume) <= 1e-9 * float(np.ptp(points, axis=0).max()) ** 3:
+            raise InputError("revolved body: its profile encloses no volume")
+        return points, np.ascontiguousarray(corners if volume > 0.0 else corners[:, ::-1])
+
+
+@dataclass(frozen=True)
 class SurfaceFile:
     """The triangles of an STL file (or another surface file that meshio reads), its lengths in mm.
 
@@ -186,8 +247,8 @@ class SurfaceFile:
 
 
 Smooth = HalfSpace | Pipe
-Faceted = Block | Cylinder | SurfaceFile
-Obstacle = HalfSpace | Pipe | Block | Cylinder | SurfaceFile
+Faceted = Block | Cylinder | Revolved | SurfaceFile
+Obstacle = HalfSpace | Pipe | Block | Cylinder | Revolved | SurfaceFile
 
 
 def encloses(points: Array, facets: Integers, query: Array) -> bool:

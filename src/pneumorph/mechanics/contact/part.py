@@ -45,8 +45,8 @@ class Touch:
     """What is reported of a contact in a state.
 
     force: on the named faces (`against` gets the opposite), N; friction: the tangential part of it in it.
-    by_face: the force on each face. area: of the named faces within reach, mm2; pressure: largest at a node, MPa; both
-    as the body is deformed.
+    by_face: the force on each face, and on each free body, `against` included. area: of the named faces within reach,
+    mm2; pressure: largest at a node, MPa; both as the body is deformed.
     distance: the smallest, mm; infinite where nothing is within reach.
     """
 
@@ -78,6 +78,9 @@ class Interaction(Protocol):
 
     def distance(self, place: Place) -> float:
         """Return the smallest distance, mm: infinite beyond reach, not positive where surfaces intersect."""
+
+    def intersection(self, place: Place) -> Array | None:
+        """Return a point (d,) where the surfaces intersect; None where they are apart."""
 
     def near(self, place: Place) -> Integers:
         """Return pairs of nodes (k, 2) that may soon be coupled."""

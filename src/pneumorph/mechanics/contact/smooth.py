@@ -39,7 +39,7 @@ class SmoothContact:
         self.reach, self.stiffness, self.coefficient = reach, stiffness, coefficient
 
     def _gaps(self, group: Points, place: Place) -> tuple[Array, Array, Array]:
-        at = np.einsum("k,mki->mi", group.share, place.position[group.nodes])
+        at = np.einsum("mk,mki->mi", group.share, place.position[group.nodes])
         return self.obstacle.gap(at - place.way * self.along)
 
     def normal(self, place: Place, *, hessian: bool, exact: bool = True) -> Part:
@@ -75,7 +75,7 @@ class SmoothContact:
         for group, force, plane in zip(self.points, lag.force, lag.plane, strict=True):
             near = force > 0.0
             limit, plane = self.coefficient * force[near], plane[near]
-            relative = np.einsum("k,mki->mi", group.share, moved[group.nodes[near]]) - way
+            relative = np.einsum("mk,mki->mi", group.share[near], moved[group.nodes[near]]) - way
             slip = np.einsum("mij,mj->mi", plane, relative)
             size = np.linalg.norm(slip, axis=1)
             integral, over, slope = friction(size, transition)
@@ -114,10 +114,16 @@ class SmoothContact:
         least = min(float(self._gaps(group, place)[0].min()) for group in self.points)
         return least if least < self.reach else np.inf
 
+    def pressing(self, place: Place) -> list[Array]:
+        """Return the normal force at the force points of each group, N."""
+        gaps = [self._gaps(group, place)[0] for group in self.points]
+        pairs = zip(self.points, gaps, strict=True)
+        return [-group.weight * barrier(gap, self.reach, self.stiffness)[1] for group, gap in pairs]
+
     def bearing(self, place: Place, deformed: list[Points]) -> tuple[float, float]:
         """Return the area within reach, mm2, and the largest pressure, MPa; deformed: force points as they are."""
         area, largest = 0.0, 0.0
-        for group, now in zip(self.points, deformed, strict=True):
+        for group, now in zip(self.points, deformed, strict=False):  # those of free bodies come last
             gap, _, _ = self._gaps(group, place)
             area += float(now.weight[gap < self.reach].sum())
             force = -group.weight * barrier(gap, self.reach, self.stiffness)[1]
@@ -130,8 +136,13 @@ class SmoothContact:
         for group in self.points:
             gap, _, _ = self._gaps(group, place)
             i = int(np.argmin(gap))
-            found.append((float(gap[i]), group.share @ place.position[group.nodes[i]]))
+            found.append((float(gap[i]), group.share[i] @ place.position[group.nodes[i]]))
         return min(found, key=lambda item: item[0])
+
+    def intersection(self, place: Place) -> Array | None:
+        """Return the deepest point (d,) in the obstacle; None where all are outside."""
+        gap, where = self.worst(place)
+        return where if gap <= 0.0 else None
 
     def near(self, place: Place) -> Integers:
         """Return no pairs: the nodes of a face are coupled by their cell."""
@@ -148,16 +159,16 @@ class _Sum:
         self.coupling = np.zeros(position.shape)
 
     def add(self, group: Points, near: NDArray[np.bool_], energy: float, force: Array, blocks: Array | None) -> None:
-        nodes, share, d = group.nodes[near], group.share, self.shape[1]
+        nodes, share, d = group.nodes[near], group.share[near], self.shape[1]
         self.energy += energy
-        np.add.at(self.gradient, nodes, share[None, :, None] * force[:, None, :])
+        np.add.at(self.gradient, nodes, share[:, :, None] * force[:, None, :])
         self.push -= force.sum(axis=0)
         if blocks is None or not len(nodes):
             return
         pulled = -np.einsum("mij,j->mi", blocks, self.along)
-        np.add.at(self.coupling, nodes, share[None, :, None] * pulled[:, None, :])
+        np.add.at(self.coupling, nodes, share[:, :, None] * pulled[:, None, :])
         unknowns = nodes[:, :, None] * d + np.arange(d)
-        full = np.einsum("a,b,mij->maibj", share, share, blocks)
+        full = np.einsum("ma,mb,mij->maibj", share, share, blocks)
         rows = np.broadcast_to(unknowns[:, :, :, None, None], full.shape)
         columns = np.broadcast_to(unknowns[:, None, None, :, :], full.shape)
         self.entries.append(upper(rows.ravel(), columns.ravel(), full.ravel()))

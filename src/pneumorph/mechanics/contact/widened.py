@@ -40,16 +40,8 @@ class WidenedPattern:
         self.pattern = Pattern(nodes, self.base.dimension, keys, start)
         # the base's values in a row keep their order: find the columns of each in the wider row
         rows = np.repeat(np.arange(nodes * self.base.dimension), np.diff(self.base.indptr))
-        self._places = self._place(rows, self.base.indices.astype(np.int64))
+        self._places = self.pattern.places(rows, self.base.indices.astype(np.int64))
         return True
-
-    def _place(self, rows: Integers, columns: Integers) -> Integers:
-        """Return where entries of the upper triangle stand among the values; they must have a place."""
-        wide, d = self.pattern, self.base.dimension
-        first, second = rows // d, columns // d
-        own = first == second
-        rank = np.searchsorted(wide.keys, first * wide.nodes + second) - wide.start[first]
-        return wide.indptr[rows] + np.where(own, columns - rows, d - rows % d + d * rank + columns % d)
 
     def widen(self, values: Array) -> Array:
         """Return values in the order of the base's pattern in that of this one."""
@@ -62,4 +54,4 @@ class WidenedPattern:
     def add(self, entries: Entries, values: Array) -> None:
         """Add matrix entries (upper triangle) to values in the order of this pattern."""
         rows, columns, numbers = entries
-        values += np.bincount(self._place(rows, columns), numbers, len(values))
+        values += np.bincount(self.pattern.places(rows, columns), numbers, len(values))
