@@ -5,7 +5,7 @@ import math
 import pytest
 
 from pneumorph.errors import InputError, NameNotFoundError
-from pneumorph.gaits import Gait, crawling, undulation
+from pneumorph.gaits import Gait, crawling, earthworm, inchworm, undulation
 from pneumorph.mechanics import Phase
 
 UP, DOWN = Phase("up", {"PN1": 0.01}), Phase("down", {"PN1": 0.0})
@@ -48,6 +48,29 @@ def test_a_crawl_holds_the_centre_and_one_leg_and_ends_in_its_first_posture():
         assert {name: value for name, value in gait.programme.values(time).items() if value} == first
 
 
+def test_an_earthworm_always_holds_with_one_end_and_lengthens_and_shortens_between():
+    settle = (Phase("gravity", {"gravity": 9810.0}),)
+    gait = earthworm(("r1", "r2"), "m", ("f1", "f2"), 0.1, 0.02, settle=settle, cycles=2)
+    assert [phase.name for phase in gait.settle] == ["hold", "gravity"]  # it holds before it has a weight
+    assert [phase.name for phase in gait.phases] == ["+m", "+front", "-rear", "-m", "+rear", "-front"]
+    at = gait.programme.values
+    for time in range(2, 15):
+        values = at(time)
+        ends = (values["r1"] == values["r2"] == 0.1, values.get("f1", 0.0) == values.get("f2", 0.0) == 0.1)
+        assert any(ends)
+        if values.get("m", 0.0) != at(time - 1).get("m", 0.0):  # while the body changes its length, one end is free
+            assert sum(ends) == 1
+    assert at(2)["r1"] == at(8)["r1"] == at(14)["r1"] == 0.1
+    assert at(8)["m"] == at(8)["f1"] == 0.0
+
+
+def test_an_inchworm_lies_down_before_it_holds():
+    settle = (Phase("gravity", {"gravity": 9810.0}),)
+    gait = inchworm(("r",), "m", ("f",), 0.1, 0.02, settle=settle)
+    assert [phase.name for phase in gait.settle] == ["gravity", "hold"]
+    assert gait.phases == earthworm(("r",), "m", ("f",), 0.1, 0.02).phases
+
+
 def test_a_mirrored_gait_swaps_its_cavities_and_mirroring_twice_changes_nothing():
     gait = undulation(("PN1", "PN2", "PN3"), 0.013, settle=(Phase("gravity", {"gravity": 9810.0}),))
     swap = {"PN1": "PN3", "PN3": "PN1"}
@@ -76,5 +99,11 @@ def test_other_schedules_that_are_wrong_are_refused_with_one_message():
         undulation(("PN1", "PN1"), 0.01)
     with pytest.raises(InputError, match="expected each once"):
         undulation((), 0.01)
+    with pytest.raises(InputError, match="r, m, r, expected each once"):
+        earthworm(("r",), "m", ("r",), 0.1, 0.02)
+    with pytest.raises(InputError, match="no cavities in the front"):
+        inchworm(("r",), "m", (), 0.1, 0.02)
+    with pytest.raises(InputError, match="no cavities in the rear"):
+        earthworm((), "m", ("f",), 0.1, 0.02)
     with pytest.raises(InputError, match="3 legs, PN1, PN2, PN3, expected 4"):
         crawling(("PN1", "PN2", "PN3"), "PN5", 0.01)

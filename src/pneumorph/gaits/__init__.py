@@ -2,6 +2,6 @@
 
 from pneumorph.gaits.gait import Gait
 from pneumorph.gaits.locomotion import Foot, Locomotion, locomotion
-from pneumorph.gaits.patterns import crawling, undulation
+from pneumorph.gaits.patterns import crawling, earthworm, inchworm, undulation
 
-__all__ = ["Foot", "Gait", "Locomotion", "crawling", "locomotion", "undulation"]
+__all__ = ["Foot", "Gait", "Locomotion", "crawling", "earthworm", "inchworm", "locomotion", "undulation"]

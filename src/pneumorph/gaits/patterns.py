@@ -1,4 +1,4 @@
-"""The gaits of the PneuNet robots: phases over named cavities."""
+"""The gaits of the PneuNet and pipe robots: phases over named cavities."""
 
 from __future__ import annotations
 
@@ -41,6 +41,63 @@ def crawling(
     pairs = zip(order, [*order[1:], order[0]], strict=True)
     steps = [(f"+{new} -{old}", {new: pressure, old: 0.0}) for old, new in pairs]
     return Gait(_phases(steps, ramp), (*settle, *first), cycles)
+
+
+def earthworm(
+    rear: Sequence[str],
+    middle: str,
+    front: Sequence[str],
+    pressure: float,
+    stretch: float,
+    *,
+    cycles: int = 1,
+    settle: Sequence[Phase] = (),
+    **ramp: Any,
+) -> Gait:
+    """Return the gait of an earthworm in a pipe near its own size: one end holds while the other is moved.
+
+    The rear is filled first, before `settle`, so that it holds when gravity comes. The cycle is +middle, +front, -rear,
+    -middle, +rear, -front: lengthen, hold in front, let go behind, draw up, hold behind, let go in front.
+
+    rear, front: cavities that press their end against the pipe. middle: that lengthens the body. pressure, stretch:
+    gauge, MPa, of the ends and of the middle. Other arguments as for `undulation`. Raises InputError for a cavity named
+    twice, and for an end without one.
+    """
+    if not rear or not front:
+        raise InputError(f"gait: no cavities in the {'front' if rear else 'rear'}, expected at least one")
+    _each_once((*rear, middle, *front))
+    fill, vent = (dict.fromkeys(rear, value) for value in (pressure, 0.0))
+    grip, release = (dict.fromkeys(front, value) for value in (pressure, 0.0))
+    steps: list[tuple[str, dict[str, float]]] = [
+        (f"+{middle}", {middle: stretch}),
+        ("+front", grip),
+        ("-rear", vent),
+        (f"-{middle}", {middle: 0.0}),
+        ("+rear", fill),
+        ("-front", release),
+    ]
+    first = _phases([("hold", fill)], ramp)
+    return Gait(_phases(steps, ramp), (*first, *settle), cycles)
+
+
+def inchworm(
+    rear: Sequence[str],
+    middle: str,
+    front: Sequence[str],
+    pressure: float,
+    stretch: float,
+    *,
+    cycles: int = 1,
+    settle: Sequence[Phase] = (),
+    **ramp: Any,
+) -> Gait:
+    """Return the gait of an inchworm in a pipe much wider than itself: an end holds by bending until it is wedged.
+
+    The order of `earthworm`, with the cavities on one side of each end alone; `settle` (gravity) comes first, as
+    the robot lies on the pipe. Arguments and errors as there.
+    """
+    gait = earthworm(rear, middle, front, pressure, stretch, cycles=cycles, **ramp)
+    return Gait(gait.phases, (*settle, *gait.settle), cycles)
 
 
 def _phases(steps: Sequence[tuple[str, Mapping[str, float]]], ramp: Mapping[str, Any]) -> tuple[Phase, ...]:

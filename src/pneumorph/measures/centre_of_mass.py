@@ -16,18 +16,28 @@ Array = NDArray[np.float64]
 
 
 @lru_cache(maxsize=4)
-def nodal_mass(model: Model) -> Array:
-    """Return mass by node (nodes,), tonne, work-equivalent; raises InputError for a material without a density."""
-    density = {name: density_of(item, name, "the centre of mass") for name, item in model.materials.items()}
+def nodal_mass(model: Model, domains: tuple[str, ...] | None = None) -> Array:
+    """Return mass by node (nodes,), tonne, work-equivalent; raises InputError for a material without a density.
+
+    domains: those that have mass here; by default all.
+    """
+    density = {
+        name: density_of(item, name, "the centre of mass") if domains is None or name in domains else 0.0
+        for name, item in model.materials.items()
+    }
     return lumped_mass(model.mesh, density, False)
 
 
 @dataclass(frozen=True)
 class CentreOfMass:
-    """One coordinate of the centre of mass, mm; axis: 'x', 'y' or 'z'. Raises InputError for another axis."""
+    """One coordinate of the centre of mass, mm; axis: 'x', 'y' or 'z'. Raises InputError for another axis.
+
+    domain: the material domains that are weighed; None: all.
+    """
 
     axis: str
     kind: str = "length"
+    domain: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("x", "y", "z"):
@@ -40,7 +50,7 @@ class CentreOfMass:
 
     def vector(self, state: State) -> Array:
         """Return the centre of mass (d,), mm."""
-        mass = nodal_mass(state.model)
+        mass = nodal_mass(state.model, self.domain)
         return np.asarray(mass @ state.positions / mass.sum())
 
     def __call__(self, state: State) -> float:

@@ -21,6 +21,7 @@ from pneumorph.mechanics.fields import BlockFields, fields, principal, to_nodes,
 
 Array = NDArray[np.float64]
 Quantity = Callable[[Array, Array], Array]
+Domains = str | tuple[str, ...] | None
 
 
 def _component(i: int, j: int) -> Quantity:
@@ -68,25 +69,27 @@ def quantity(name: str) -> tuple[str, Quantity]:
     return QUANTITIES[name]
 
 
-def _parts(state: State, domain: str | None) -> list[BlockFields]:
-    """Return the fields of one domain, or of all; raises NameNotFoundError."""
-    if domain is not None and domain not in state.model.mesh.domains:
-        raise NameNotFoundError(unknown_name("domain", domain, state.model.mesh.domains))
-    return [part for part in fields(state) if domain in (None, part.block.domain)]
+def _parts(state: State, domain: Domains) -> list[BlockFields]:
+    """Return the fields of one domain, of several, or of all; raises NameNotFoundError."""
+    known = state.model.mesh.domains
+    chosen = known if domain is None else (domain,) if isinstance(domain, str) else domain
+    for name in chosen:
+        if name not in known:
+            raise NameNotFoundError(unknown_name("domain", name, known))
+    return [part for part in fields(state) if part.block.domain in chosen]
 
 
 @dataclass(frozen=True)
 class _StressMeasure:
     quantity: str = "von_mises"
-    domain: str | None = None
+    domain: Domains = None
     name: str = ""
 
     def __post_init__(self) -> None:
         quantity(self.quantity)
         if not self.name:
-            object.__setattr__(
-                self, "name", f"{self._prefix}_{self.quantity}" + (f":{self.domain}" if self.domain else "")
-            )
+            of = ",".join(self.domain) if isinstance(self.domain, tuple) else self.domain
+            object.__setattr__(self, "name", f"{self._prefix}_{self.quantity}" + (f":{of}" if of else ""))
 
     @property
     def _prefix(self) -> str:
@@ -100,7 +103,7 @@ class _StressMeasure:
 
 @dataclass(frozen=True)
 class LargestStress(_StressMeasure):
-    """Largest value of a quantity at the quadrature points of a domain (None: of all).
+    """Largest value of a quantity at the quadrature points of a domain, or of several (None: of all).
 
     At a re-entrant corner or clamp edge the exact value is infinite: it then grows as the mesh is refined.
     Raises NameNotFoundError for a quantity or domain.
@@ -127,7 +130,7 @@ class LargestStress(_StressMeasure):
 
 @dataclass(frozen=True)
 class MeanStress(_StressMeasure):
-    """Average of a quantity over the reference volume of a domain (None: of all).
+    """Average of a quantity over the reference volume of a domain, or of several (None: of all).
 
     Raises NameNotFoundError for a quantity or domain.
     """
@@ -148,7 +151,7 @@ class MeanStress(_StressMeasure):
 
 @dataclass(frozen=True)
 class StressQuantile(_StressMeasure):
-    """The value of a quantity that a share of the reference volume of a domain (None: of all) does not exceed.
+    """The value of a quantity that a share of the volume of a domain, or of several (None: of all), does not exceed.
 
     share: 0 to 1. Unlike the largest value it settles as the mesh is refined, also where corners are sharp.
     Raises InputError for the share, NameNotFoundError for a quantity or domain.
