@@ -27,8 +27,8 @@ _PUBLIC = {
     "units": ("parse", "show"),
     "materials": ("Material", "NeoHookean", "Yeoh", "library"),
     "geometry": (
-        "Actuator", "BendingSkin", "Finger", "HexagonalPrism", "PlaneCrawler", "PneuNet", "SoftLimb", "ThickSphere",
-        "ThickTube", "export",
+        "Actuator", "BendingSkin", "Finger", "HexagonalPrism", "PipeRobot", "PlaneCrawler", "PneuNet", "Quadruped",
+        "SoftLimb", "ThickSphere", "ThickTube", "export",
     ),
     "mesh": ("Imported", "Mesh", "MeshSize", "Selector", "generate", "inspect"),
     "mechanics": (
@@ -72,8 +72,10 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from pneumorph.geometry import BendingSkin as BendingSkin
     from pneumorph.geometry import Finger as Finger
     from pneumorph.geometry import HexagonalPrism as HexagonalPrism
+    from pneumorph.geometry import PipeRobot as PipeRobot
     from pneumorph.geometry import PlaneCrawler as PlaneCrawler
     from pneumorph.geometry import PneuNet as PneuNet
+    from pneumorph.geometry import Quadruped as Quadruped
     from pneumorph.geometry import SoftLimb as SoftLimb
     from pneumorph.geometry import ThickSphere as ThickSphere
     from pneumorph.geometry import ThickTube as ThickTube

@@ -66,6 +66,11 @@ def test_a_design_is_found_verified_reported_and_resumed(pneumorph, here, file, 
     again = pneumorph("design", file, "--out", out, "--resume", "--no-report")
     assert again.exit_code == 0
     assert len(here) == 2  # nothing is computed twice
+    before = (out / "found.toml").read_text()
+    (out / "report.html").unlink()
+    assert pneumorph("report", out).exit_code == 0
+    assert "nearest on the way" in (out / "report.html").read_text()
+    assert (out / "found.toml").read_text() == before
     file.write_text(TEXT.replace("trials = 24", "trials = 25"))
     again = pneumorph("design", file, "--out", out, "--resume")
     assert again.exit_code == 2

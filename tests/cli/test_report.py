@@ -56,7 +56,7 @@ def short(monkeypatch):
 
 def test_a_reproduction_writes_its_comparison(pneumorph, short, no_pictures, tmp_path):
     out = tmp_path / "out"
-    result = pneumorph("reproduce", "hexagonal-prism", "--quick", "--out", out)
+    result = pneumorph("reproduce", "hexagonal-prism", "--part", "bending", "--quick", "--out", out)
     assert result.exit_code == 0, result.stderr
     lines = (out / "comparison.csv").read_text().splitlines()
     assert lines[0] == "quantity,condition,reported,computed,unit,relative_difference,note"

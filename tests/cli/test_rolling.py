@@ -158,7 +158,7 @@ def test_wheels_larger_than_the_track_unknown_parts_and_runs_are_refused(pneumor
     refused(pneumorph(*RIGID, *out, "--video", "curved-3_flt"), "--video", "did you mean 'curved-3_flat'")
     refused(pneumorph("reproduce", "soft-wheel"), "--part: missing, allowed for soft-wheel: limb, rigid")
     refused(pneumorph("reproduce", "soft-wheel", "--part", "limbs"), "--part: limbs, allowed for soft-wheel: limb, ")
-    refused(pneumorph("reproduce", "hexagonal-prism", "--part", "rigid"), "hexagonal-prism has no parts")
+    refused(pneumorph("reproduce", "hexagonal-prism", "--part", "rigid"), "allowed for hexagonal-prism: bending")
     assert not (tmp_path / "out").exists()
 
 

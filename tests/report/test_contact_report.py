@@ -4,7 +4,19 @@ import numpy as np
 import pytest
 
 from pneumorph.materials import NeoHookean
-from pneumorph.mechanics import Block, Clamp, Contact, HalfSpace, Model, Motion, Phase, Pipe, Programme
+from pneumorph.mechanics import (
+    Block,
+    Clamp,
+    Contact,
+    FreeBody,
+    Gravity,
+    HalfSpace,
+    Model,
+    Motion,
+    Phase,
+    Pipe,
+    Programme,
+)
 from pneumorph.mechanics.contact.outlines import outline
 from pneumorph.mesh import box, inspect
 from pneumorph.report import write_report
@@ -12,6 +24,7 @@ from pneumorph.report.asked import asked_tables
 from pneumorph.report.bodies import RigidBodies
 from pneumorph.report.curves import default_curves
 from pneumorph.report.drawing import Drawing
+from pneumorph.report.fields import displacement
 from pneumorph.report.findings import checks_table, results_table
 from pneumorph.report.view import face_on
 from pneumorph.solution import solve
@@ -53,7 +66,8 @@ def test_a_pipe_is_a_tube_as_long_as_the_box():
 
 def test_a_body_is_drawn_where_the_programme_has_moved_it(pressed):
     bodies = RigidBodies(list(pressed.states))
-    (before,), (after,) = bodies.layers({}), bodies.layers({"stamp": 0.1})
+    points = pressed.model.mesh.points
+    (before,), (after,) = bodies.layers({}, points), bodies.layers({"stamp": 0.1}, points)
     assert before.points[:, 2].min() == pytest.approx(1.02)
     assert after.points - before.points == pytest.approx(np.array([[0.0, 0.0, -0.1]]).repeat(8, axis=0))
     assert 0.0 < after.opacity < 1.0
@@ -76,6 +90,43 @@ def test_contacts_are_asked_checked_and_drawn_as_one_figure_each(pressed):
     assert "body_force_z:stamp" in curves["Force on body stamp"]
     heads = results_table(pressed, [0], "").head
     assert not any("on z1" in head for head in heads)
+
+
+@pytest.fixture(scope="module")
+def dropped():
+    """A brick of 2 g that falls through nothing beside a clamped block."""
+    brick = FreeBody("brick", Block((2.0, 0.0, 0.0), (3.0, 1.0, 2.0)), mass=2e-6)
+    floor = Contact("floor", ("brick",), HalfSpace((0.0, 0.0, -9e3), (0.0, 0.0, 1.0)))
+    mesh, loads = box(1, 1, 1), (Gravity((0.0, 0.0, -1.0)),)
+    material = NeoHookean(0.3, density=1e-9)
+    model = Model(mesh, {"body": material}, (Clamp("z0"),), loads, free_bodies=(brick,), contacts=(floor,))
+    phase = Phase("fall", {"gravity": 9810.0}, first=0.5, largest=0.5, duration=0.01, inertia="quasi-static")
+    return solve(model, Programme((phase,)))
+
+
+def test_a_free_body_is_drawn_where_it_has_come_to(dropped):
+    states = list(dropped.states)
+    drawn = RigidBodies(states).layers(states[-1].values, states[-1].positions)
+    body = next(layer for layer in drawn if layer.points[:, 2].min() > -100.0)
+    fallen = states[-1].body_motion("brick").centre[2] - 1.0
+    assert fallen < -0.1
+    assert [body.points[:, 2].min(), body.points[:, 2].max()] == pytest.approx([fallen, fallen + 2.0])
+    assert Drawing(states).view.height > face_on(states[:1]).height
+    assert displacement(states[-1]).max() < 0.1  # the colours are those of the soft body
+    rim = next(layer for layer in drawn if layer.segments is not None)  # of the floor, which is seen along itself
+    assert rim.points[:, 2] == pytest.approx(np.full(4, -9e3))
+
+
+def test_free_bodies_are_asked_checked_and_have_a_figure_for_each_vector(dropped):
+    table = next(table for table in asked_tables(dropped) if table.title == "Free bodies")
+    name, surface, mass, centre = table.rows[0]
+    assert (name, surface, mass.text, centre) == ("brick", "Block", "2 g", "(2.5, 0.5, 1) mm")
+    checks = {row[0]: row for row in checks_table(dropped, inspect(dropped.model.mesh)).rows}
+    assert checks["Strain of the rigid body brick"][3].text == "pass"
+    curves = {curve.title: curve.y for curve in default_curves(dropped)}
+    assert curves["Centre of brick"] == ("body_x:brick", "body_y:brick", "body_z:brick")
+    assert curves["Velocity of brick"] == tuple(f"body_velocity_{a}:brick" for a in "xyz")
+    assert "Force on body brick" not in curves  # nothing touches it
 
 
 def test_a_profile_is_drawn_and_its_numbers_are_kept(pressed, tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 """The reproduction of the auxetic skin: which designs, and what is made of their results; the runs are elsewhere."""
 
+import json
 import math
 
 import pytest
@@ -155,9 +156,14 @@ def test_options_of_other_systems_are_refused():
 
     from pneumorph.cli.app import app
 
-    result = CliRunner().invoke(app, ["reproduce", "auxetic-skin", "--part", "rigid"])
-    assert result.exit_code == 2
-    assert "auxetic-skin has no parts" in result.output
+    for options, message in (
+        (["--part", "rigid"], "--part: rigid, allowed for auxetic-skin: shapes; none for its sweep"),
+        (["--beds", "2"], "--beds: the sweep does not take this option"),
+        (["--part", "shapes", "--scheduler", "tcp://x"], "--scheduler: the part 'shapes' does not take this option"),
+    ):
+        result = CliRunner().invoke(app, ["reproduce", "auxetic-skin", *options])
+        assert result.exit_code == 2
+        assert message in result.output
 
 
 @pytest.mark.parametrize(("status", "code"), [("done", 0), ("stopped", 3)])
@@ -169,7 +175,7 @@ def test_the_command_reports_and_says_how_it_ended(tmp_path, monkeypatch, status
 
     table = table_of(SkinStudy(True))
     table.rows.rows[0]["status"] = status
-    monkeypatch.setattr(command, "run_sweep", lambda sweep, folder, **settings: folder.mkdir() or table)
+    monkeypatch.setattr(command, "run_sweep", lambda sweep, folder, **settings: table)
     monkeypatch.setattr(command, "tension_findings", tuple)
     written = []
     monkeypatch.setattr("pneumorph.report.skins.write_skin_report", lambda *given: written.append(given))
@@ -180,4 +186,5 @@ def test_the_command_reports_and_says_how_it_ended(tmp_path, monkeypatch, status
     held = sum(item.holds is True for item in skins.findings(SkinStudy(True), table))
     assert f"{held} of {held} statements of the study hold" in result.output
     assert written[0][1] is table
+    assert json.loads((out / "skins.json").read_text())["quick"] is True
     assert written[0][3:] == (out, f"pneumorph reproduce auxetic-skin --quick --out {out}")

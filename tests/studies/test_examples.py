@@ -20,7 +20,7 @@ from pneumorph.studies import load_study, run_study, study_from
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FILES = sorted(path.name for path in EXAMPLES.glob("*.toml"))
 # minutes on one core
-SLOW = {"finger.toml", "skinned-tube.toml"}
+SLOW = {"finger.toml", "gripper.toml", "held-block.toml", "massage.toml", "skinned-tube.toml"}
 
 
 @cache
@@ -43,6 +43,16 @@ def test_at_least_eight_examples_run_in_every_test():
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in FILES])
 def test_an_example_reaches_its_target(name):
     assert solved(name).status is Status.DONE
+
+
+def test_the_prism_hangs_in_the_pipe_by_friction_and_slides_once_it_is_let_go():
+    solution = solved("anchored-prism.toml")
+    history, quarter = solution.history, 9810.0 * float(nodal_mass(solution.model).sum())
+    time, place = history.values("time"), history.values("centre_of_mass_z")
+    hung, normal = int(np.argmin(np.abs(time - 2.0))), history.values("normal_force:pipe")
+    assert history.values("contact_force_z:pipe")[hung] == pytest.approx(quarter, rel=0.01)
+    assert 0.02 * normal[hung] > 4.0 * quarter > 0.02 * normal[-1]
+    assert place[0] - place[hung] < 0.2 < 2.0 < place[hung] - place[-1]
 
 
 def test_the_balloon_follows_its_closed_form_through_the_pressure_maximum():
@@ -119,6 +129,28 @@ def test_a_blocked_tip_and_the_clamp_are_in_balance():
     assert np.all(np.diff(force) > 0.0)
     # all that acts besides the clamp is the force at the tip, a length of the beam away
     np.testing.assert_allclose(moment / force, solution.states[0].model.mesh.points[:, 0].max(), rtol=0.03)
+
+
+@pytest.mark.slow
+def test_a_cup_in_a_gripper_rises_with_its_holder():
+    history = solved("gripper.toml").history
+    rise = history.values("body_z:cup")[-1] - history.values("body_z:cup")[0]
+    assert 18.0 < rise < 20.0
+    assert history.values("contact_force_z:stand")[-1] == 0.0
+    assert -history.values("contact_force_z:grip")[-1] == pytest.approx(3.333e-6 * 9810.0, rel=1e-2)
+
+
+@pytest.mark.slow
+def test_a_held_block_hangs_by_friction_alone_with_four_times_its_weight():
+    history = solved("held-block.toml").history
+    weight = 1e-5 * 9810.0
+    assert history.values("contact_force_x:stand")[-1] == 0.0
+    assert -history.values("body_force_x:block")[-1] == pytest.approx(weight + 0.4, rel=1e-3)
+    grip, back = history.values("contact_force_z:grip")[-1], history.values("contact_force_z:back")[-1]
+    assert grip == pytest.approx(back, rel=1e-3)
+    assert weight + 0.4 < 0.6 * (grip + back)
+    assert history.values("body_x:block")[-1] - 24.5 < 1.0  # the table is 2 mm away
+    assert history.values("body_strain:block").max() < 1e-5
 
 
 def test_exchanged_pressures_bend_as_far():
@@ -217,3 +249,16 @@ def test_the_ground_bears_the_crawler_and_each_cycle_takes_it_as_far():
     ways = np.diff(solution.history.values("centre_of_mass_x")[ends])
     assert ways[0] > 0.05
     assert ways[1] == pytest.approx(ways[0], rel=0.05)
+
+
+@pytest.mark.slow
+def test_the_ends_of_the_arm_bear_what_the_finger_presses_and_the_skin_less_than_hurts():
+    solution = solved("massage.toml")
+    state, history = solution.states[-1], solution.history
+    mesh, force = state.model.mesh, np.array(state.touches["massage"].force)
+    reactions = state.reactions.reshape(-1, 3)
+    ends = sum(reactions[mesh.face_nodes(f"arm.{end}")].sum(axis=0) for end in ("wrist", "elbow"))
+    np.testing.assert_allclose(ends, force, atol=1e-4 * np.linalg.norm(force))
+    mean, largest = (history.values(f"{kind}contact_pressure:massage")[-1] for kind in ("mean_", ""))
+    assert 0.0 < mean < largest < 0.18
+    assert (np.diff(history.values("contact_force_z:massage")) >= 0.0).all()

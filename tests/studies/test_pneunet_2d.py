@@ -1,15 +1,19 @@
 """The reproduction of system 2 in plane strain: what is asked, compared and drawn."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from pneumorph.closed_form.pneunet import pneunet_curvature
-from pneumorph.errors import InputError
+from pneumorph.errors import InputError, NotConvergedError
 from pneumorph.gaits import Locomotion
 from pneumorph.geometry import PlaneCrawler
 from pneumorph.materials import library
+from pneumorph.measures import CentreOfMass
+from pneumorph.measures.centre_of_mass import nodal_mass
+from pneumorph.mechanics import Programme, march
 from pneumorph.studies import reproductions, study_from
 from pneumorph.studies.reproductions import pneunet_2d
 from pneumorph.studies.reproductions.pneunet_segment import segment_curvatures
@@ -69,6 +73,58 @@ def test_forces_and_motion_stand_in_the_rows(monkeypatch):
     assert bending.reported == pytest.approx(pneunet_curvature(0.03, 3.0, 5.0, 0.013))
 
 
+def test_a_full_run_goes_through_its_first_cycle_again_in_increments_twice_as_large(monkeypatch):
+    asked = []
+
+    def march(model, programme, settings, start):
+        asked.append((programme, start))
+        yield SimpleNamespace(x=20.0)
+        yield SimpleNamespace(x=24.0)
+
+    study = pneunet_2d.study(quick=False)
+    monkeypatch.setattr(pneunet_2d, "march", march)
+    monkeypatch.setattr(pneunet_2d, "CentreOfMass", lambda axis: lambda state: state.x)
+    states = [SimpleNamespace(x=15.0, model=None)] * 8
+    (row,) = pneunet_2d._step_size(SimpleNamespace(states=states), study, motion(8))
+    assert row.computed == pytest.approx((24.0 - 15.0) / (6 * 1.5))
+    ((programme, start),) = asked
+    assert start == [states[1]]
+    assert [phase.name for phase in programme.phases] == list(pneunet_2d.STEPS.values())
+    for wide, phase in zip(programme.phases, study.programme.phases, strict=False):
+        assert (wide.largest, wide.targets) == (2.0 * phase.largest, phase.targets)
+    assert pneunet_2d._step_size(SimpleNamespace(states=states), study, motion(3)) == []
+    assert pneunet_2d._step_size(SimpleNamespace(states=states), pneunet_2d.study(quick=True), motion(8)) == []
+
+    def stops(model, programme, settings, start):
+        raise NotConvergedError("no state")
+        yield
+
+    monkeypatch.setattr(pneunet_2d, "march", stops)
+    (row,) = pneunet_2d._step_size(SimpleNamespace(states=states), study, motion(8))
+    assert row.computed is None
+
+
+@pytest.mark.slow
+def test_the_way_of_a_cycle_depends_little_on_the_increments_and_nothing_intersects():
+    """The quick run, and the same in increments half as large."""
+    study = pneunet_2d.study(quick=True)
+    problem, centre, ways = study.build(), CentreOfMass("x"), []
+    for factor in (1.0, 0.5):
+        phases = tuple(
+            replace(phase, first=factor * phase.first, largest=factor * phase.largest)
+            for phase in problem.programme.phases
+        )
+        states = list(march(problem.model, Programme(phases), problem.settings))
+        rest = next(state for state in states if state.time == 1.0)
+        ways.append(centre(states[-1]) - centre(rest))
+        assert all(min(touch.distance for touch in state.touches.values()) > 0.0 for state in states[1:])
+        for state in (rest, states[-1]):
+            weight = 9810.0 * nodal_mass(problem.model).sum()
+            assert state.touches["ground"].force[1] == pytest.approx(weight, rel=0.02)
+    assert ways[0] > 1.0
+    assert ways[1] == pytest.approx(ways[0], rel=0.05)
+
+
 def test_what_the_run_did_not_reach_has_no_computed_number(monkeypatch):
     rows = rows_of(monkeypatch, motion(3))
     assert rows["force of the rear over the front end", "after step v, -PN1"].computed is None
@@ -78,7 +134,7 @@ def test_what_the_run_did_not_reach_has_no_computed_number(monkeypatch):
 
 def test_the_reported_forces_are_drawn_at_the_ends_of_their_steps():
     rear, front = pneunet_2d.curves(pneunet_2d.study(quick=True))
-    assert rear.x_values == pytest.approx([1.0, 2.0])
+    assert rear.x_values == pytest.approx([10.0, 20.0])  # s
     assert rear.y_values == pytest.approx([5e-3, 2.5e-3])
     assert front.y == "contact_force_y:ground:front_foot"
 

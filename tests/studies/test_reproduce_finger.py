@@ -31,14 +31,18 @@ def flat(monkeypatch):
     """Six peaks of stress along the finger, without a state."""
     monkeypatch.setattr(finger, "_bent", lambda solution: SimpleNamespace(pressure={"cavity": 0.1}))
     place = np.linspace(0.0, 90.0, 400)
-    monkeypatch.setattr(finger, "_along", lambda state, study: (place, 1.0 - np.cos(2.0 * np.pi * place / 15.0)))
+    wave = 1.0 - np.cos(2.0 * np.pi * place / 15.0)
+    # the outer two are lower; with bending there are twice as many
+    path = wave * np.where(abs(place - 45.0) < 30.0, 1.0, 0.8)
+    both = 1.0 - np.cos(2.0 * np.pi * place / 7.5)
+    monkeypatch.setattr(finger, "_along", lambda state, study: (place, path, both))
 
 
-@pytest.mark.parametrize(("quick", "size"), [(True, "coarse"), (False, 3.0)])
+@pytest.mark.parametrize(("quick", "size"), [(True, 8.0), (False, 3.0)])
 def test_the_finger_bends_freely_and_then_against_a_block_that_is_raised(quick, size):
     study = finger.study(quick)
     assert study.actuator == Finger()
-    assert study.file.mesh.size == size
+    assert (study.file.mesh.size, study.file.mesh.hexahedra) == (size, True)
     assert [phase.name for phase in study.programme.phases] == ["gravity", "bend", "release", "raise", "press"]
     walls, tip = study.contacts
     assert (walls.against, walls.friction, tip.friction) == (None, 0.0, 0.0)
@@ -64,8 +68,12 @@ def test_forces_stresses_angles_and_peaks_stand_beside_the_reported_ones(flat):
     assert rows["linearity of chord_angle", "50 to 100 kPa"].computed == pytest.approx(1.0)
     assert 0.9 < rows["linearity of tip_rotation", "50 to 100 kPa"].computed < 1.0
     # peaks at 7.5, 22.5, 37.5, 52.5, 67.5 and 82.5 mm; passages at 11.8 + 13.3 n mm, 3.5 mm to either side
-    assert rows["peaks of linearised stress along the length", "free, at 100 kPa"].computed == 6.0
-    assert rows["peaks of it at the passages", "free, at 100 kPa"].computed == 4.0
+    membrane, both = (f"{name} stress through the floor" for name in ("membrane", "membrane and bending"))
+    free = "free, at 100 kPa"
+    assert rows[f"peaks of {membrane}", free].computed == 6.0
+    assert rows[f"of them at the passages, {membrane}", free].computed == 4.0
+    assert rows["lowest central peak / highest outer", free].computed == pytest.approx(1.25, rel=1e-3)
+    assert rows[f"peaks of {both}", free].computed == 12.0
 
 
 def test_what_was_not_reached_stays_empty():

@@ -29,7 +29,9 @@ def test_it_bends_away_from_its_reentrant_half(bent):
     assert bent > 1e-3
 
 
-@pytest.mark.parametrize("changed", [{"cg": 0.5}, {"reentrant": 0.0}, {"reentrant": 1.0}])
+@pytest.mark.parametrize(
+    "changed", [{"cg": 0.5}, {"cg": 0.5, "least_beam": "1.1 mm"}, {"reentrant": 0.0}, {"reentrant": 1.0}]
+)
 def test_a_skin_that_is_the_same_all_around_does_not_bend(bent, changed):
     """But for the triangles of the mesh at the caps, which are not the same all around."""
     assert abs(rotation(**changed)) < 0.1 * bent

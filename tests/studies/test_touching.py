@@ -14,6 +14,7 @@ from pneumorph.mechanics import (
     Clamp,
     Contact,
     Cylinder,
+    FreeBody,
     HalfSpace,
     Model,
     Motion,
@@ -176,7 +177,7 @@ def test_in_a_pipe_the_wall_bears_what_the_tube_does_not():
     pressures, weights, gaps = [], [], []
     for group in pair.points:
         gap = pair._gaps(group, Place(state.positions))[0]
-        height = np.einsum("k,mk->m", group.share, solution.model.mesh.points[group.nodes][:, :, 2])
+        height = np.einsum("mk,mk->m", group.share, solution.model.mesh.points[group.nodes][:, :, 2])
         middle = np.abs(height - 12.0) < 4.0  # away from the caps
         pressures.append(-barrier(gap, pair.reach, pair.stiffness)[1][middle] * group.weight[middle])
         weights.append(group.weight[middle])
@@ -188,3 +189,74 @@ def test_in_a_pipe_the_wall_bears_what_the_tube_does_not():
     found = np.concatenate(pressures).sum() / np.concatenate(weights).sum() * 8.0 / radius
     assert found == pytest.approx(wanted, rel=0.04)
     assert solution.history.values("contact_pressure:wall")[-1] == pytest.approx(wanted, rel=0.3)
+
+
+FREE = (
+    '[gravity]\n[body.thing]\nshape = "block"\nlower = ["40 mm", "0 mm", "-9 mm"]\nupper = ["50 mm", "1 mm", "-1 mm"]\n'
+    'mass = "30 g"\n'
+)
+TABLE = '[body.table]\nshape = "half-space"\npoint = ["0 mm", "0 mm", "-9.01 mm"]\nnormal = "z"\n'
+STAND = '[[contact]]\nname = "stand"\nfaces = ["thing"]\nbody = "table"\n'
+MOVING = PHASE + 'duration = "1 s"\ninertia = "quasi-static"\n'
+
+
+def test_a_mass_makes_a_body_free_and_contacts_name_it_as_a_body_or_as_a_face():
+    made = study(FINGER + FREE + TABLE + TOUCH + STAND + MOVING)
+    block = Block((40, 0, -9), (50, 1, -1))
+    assert made.free_bodies == (FreeBody("thing", block, mass=3e-5),)
+    grip, stand = made.contacts
+    assert (grip.faces, grip.against, grip.body) == (("outer",), ("thing",), "")
+    assert (stand.faces, stand.body) == (("thing",), "table")
+    again = study(made.resolved_text())
+    assert (again.free_bodies, again.contacts) == (made.free_bodies, made.contacts)
+    first = made.programme.phases[0]  # gravity comes in a phase of its own, with inertia
+    assert (first.name, first.inertia, first.duration) == ("gravity", "quasi-static", 1.0)
+    dense = study(FINGER + FREE.replace('mass = "30 g"', 'density = "2 g/cm^3"') + TOUCH + MOVING)
+    assert dense.free_bodies == (FreeBody("thing", block, density=2e-9),)
+
+
+def test_loads_and_supports_take_the_name_of_a_free_body():
+    held = '[[support]]\ntype = "clamp"\nface = "clamp"\n'
+    held += '[[support]]\ntype = "prescribed"\nface = "thing"\naxis = "z"\nname = "up"\n'
+    load = '[[load]]\ntype = "force"\nface = "thing"\ndirection = "-z"\nname = "pull"\n'
+    driven = MOVING.replace('cavity = "10 kPa"', 'pull = "1 N", up = "1 mm"')
+    problem = study(FINGER + FREE + held + load + TOUCH + driven).build()
+    nodes = problem.model.mesh.frames["thing"]
+    assert set(3 * nodes + 2) <= set(problem.model.held)
+    assert problem.model.load_patterns["pull"].reshape(-1, 3)[nodes].sum(axis=0) == pytest.approx([0, 0, -1])
+    assert problem.model.load_patterns["gravity"].reshape(-1, 3)[nodes].sum(axis=0) == pytest.approx([0, 0, -3e-5])
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "says"),
+    [
+        (FREE.replace("30 g", "0 g") + TOUCH + MOVING, InputError, "mass = 0.0 tonne, allowed: more than 0"),
+        (FREE.replace("30 g", "30 mm") + TOUCH + MOVING, UnitError, "mass = '30 mm'"),
+        (FREE + 'direction = "z"\n' + TOUCH + MOVING, StudyError, "body.thing: both direction and mass are given"),
+        (FREE + 'density = "1 g/cm^3"\n' + TOUCH + MOVING, InputError, "body.thing: .*expected one of the two"),
+        (FREE + MOVING, StudyError, "body.thing: no contact names it"),
+        (FREE + TOUCH.replace("[[contact]]", '[[contact]]\nname = "thing"') + MOVING, InputError, "the name is taken"),
+        (FREE.replace("thing", "tip") + TOUCH.replace("thing", "tip") + MOVING, InputError, "the name is taken"),
+        (FREE.replace("[gravity]\n", "") + TOUCH + MOVING, StudyError, r"a mass needs \[gravity\]; .*0 m/s²"),
+        (FREE + TOUCH + PHASE, StudyError, "phase 'phase_1': nothing holds the free body 'thing' without inertia"),
+        (TABLE + 'mass = "1 g"\n' + TOUCH.replace("thing", "table") + MOVING, StudyError, "unknown key 'mass'"),
+        (FREE + TOUCH + STAND.replace("thing", "think") + TABLE + MOVING, NameNotFoundError, "did you mean 'thing'"),
+    ],
+)  # fmt: skip
+def test_free_bodies_that_are_wrong_are_refused_before_anything_is_meshed(text, error, says):
+    with pytest.raises(error, match=says):
+        study(FINGER + text)
+
+
+def test_a_free_body_with_an_open_surface_is_refused(tmp_path):
+    corners = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+    facet = f"facet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\n"
+    (tmp_path / "cup.stl").write_text(f"solid cup\n{facet}endsolid cup\n")
+    body_text = '[gravity]\n[body.thing]\nshape = "surface"\nfile = "cup.stl"\nmass = "1 g"\n'
+    with pytest.raises(InputError, match=r"body\.thing: free body 'thing': its surface is not closed"):
+        study(FINGER + body_text + TOUCH + MOVING, tmp_path)
+
+
+def test_a_free_body_in_the_way_is_refused_with_the_shift():
+    with pytest.raises(InputError, match=r"'contact_1': outer and thing intersect at .*; the smallest shift"):
+        study(FINGER + FREE.replace('"40 mm"', '"10 mm"').replace('"-1 mm"', '"1 mm"') + TOUCH + MOVING).build()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -14,19 +15,29 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from pneumorph.cli.interrupt import Interrupt
 from pneumorph.cli.output import INTERRUPTED, STOPPED, complain, console
 from pneumorph.cli.progress import clock, progress_on
+from pneumorph.cli.record import read_record
 from pneumorph.cli.sweeping import progress_of
 from pneumorph.errors import StorageError
-from pneumorph.solution import History, Status
+from pneumorph.solution import History, Solution, Status
 from pneumorph.solution import Progress as SolveProgress
 from pneumorph.solution.files import make_folder, write_atomically
-from pneumorph.studies.design import DesignTask, SearchProgress, Verified, search, verify
+from pneumorph.studies.design import (
+    DesignTask,
+    SearchProgress,
+    Verified,
+    found_in,
+    load_design,
+    search,
+    verified_by,
+    verify,
+)
 from pneumorph.studies.design.law import Lattice
 from pneumorph.studies.design.search import Found
-from pneumorph.studies.design.task import MEASURES
+from pneumorph.studies.design.task import MEASURES, POINTS
 from pneumorph.studies.sweeps import Workers, run_sweep
 from pneumorph.units import show
 
-TARGET, TABLE, JOURNAL, RUN = "target.toml", "table", "search.journal", "verification"
+TARGET, TABLE, JOURNAL, RUN, RECORD = "target.toml", "table", "search.journal", "verification", "search.json"
 
 
 def run_design(
@@ -45,14 +56,9 @@ def run_design(
     A folder that holds another search is refused (StorageError), one that holds this search unless `resume`.
     """
     out, command = console(), shlex.join(words)
-    text, kept = task.text(), folder / TARGET
-    if kept.exists():
-        if not resume:
-            raise StorageError(f"'{folder}' already holds a search: resume it (--resume) or choose another folder")
-        if kept.read_text(encoding="utf-8") != text:
-            raise StorageError(f"'{folder}' holds another search, see its {TARGET}: choose another folder")
-    make_folder(folder)
-    write_atomically(kept, lambda path: path.write_text(text, encoding="utf-8"))
+    _keep(task, folder, resume)
+    record = {"command": command, "table": None if table is None else str(table.resolve())}
+    _write(folder / RECORD, json.dumps(record, indent=1) + "\n")
     out.print(f"{task.title}\nfolder: {folder}", markup=False)
     try:
         law = task.law(_runs(task, table or folder / TABLE, workers, out))
@@ -77,6 +83,52 @@ def run_design(
         if result.solution.status is Status.STOPPED:
             complain(f"the full model stopped before its pressure: {result.solution.message}")
             raise typer.Exit(STOPPED)
+
+
+def is_design(folder: Path) -> bool:
+    """Return whether a folder holds an inverse search."""
+    return (folder / RECORD).is_file()
+
+
+def report_design(folder: Path) -> Path:
+    """Write the report of such a folder anew from its table, journal and run; return its path.
+
+    Raises StorageError for files that are missing or damaged, or a search that was broken off; EngineError without
+    Optuna.
+    """
+    from pneumorph.report.design import write_design_report
+
+    record = read_record(folder / RECORD)
+    try:
+        command, table = str(record["command"]), record["table"]
+    except KeyError as error:
+        raise StorageError(f"{folder / RECORD} is damaged: no {error}") from error
+    task = load_design(folder / TARGET)
+    law = task.law(task.runs(folder / TABLE if table is None else Path(table)))
+    found = found_in(task, law, folder / JOURNAL)
+    checked = (folder / RUN / "run.json").exists()
+    verified = verified_by(task, found.design, Solution.open(folder / RUN)) if checked else None
+    return write_design_report(task, law, found, verified, folder, command)
+
+
+def _keep(task: DesignTask, folder: Path, resume: bool) -> None:
+    """Write the target, with its points, into a folder; raises StorageError for one that holds another search."""
+    texts = {TARGET: task.text(), POINTS: task.points_text()}
+    kept = (folder / TARGET).exists()
+    if kept and not resume:
+        raise StorageError(f"'{folder}' already holds a search: resume it (--resume) or choose another folder")
+    for name, text in texts.items():
+        path = folder / name
+        if path.exists() and path.read_text(encoding="utf-8") != (text or ""):
+            raise StorageError(f"'{folder}' holds another search, see its {name}: choose another folder")
+    make_folder(folder)
+    for name, text in texts.items():
+        if text is not None:
+            _write(folder / name, text)
+
+
+def _write(path: Path, text: str) -> None:
+    write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
 def _runs(task: DesignTask, place: Path, workers: Workers, out: Console) -> Mapping[tuple[Lattice, float], History]:

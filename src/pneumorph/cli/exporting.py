@@ -87,7 +87,7 @@ def _of_study(source: Path, wanted: Wanted) -> Written:
     study = load_study(source)
     if wanted.what not in (None, MESH) or wanted.state != "last" or wanted.pressures or wanted.suffix == ".csv":
         raise InputError(f"'{source}' is a study without states: run it, then export its run folder")
-    if _is_exact(wanted):
+    if _is_exact(wanted) and not study.assembly.parts:  # several bodies have facets, in their places
         return _template(study, wanted)
     problem = study.build()
     if wanted.suffix == ".inp":
@@ -107,7 +107,7 @@ def _of_run(solution: Solution, wanted: Wanted) -> Written:
         return write_pressure_volume(wanted.to, solution.history, wanted.cavities)
     if wanted.suffix == ".inp":
         return _inp_of_run(solution, wanted, title)
-    if what == MESH and _is_exact(wanted) and "study" in solution.about:
+    if what == MESH and _is_exact(wanted) and "study" in solution.about and not solution.about["study"].get("part"):
         return _template(study_from(solution.about["study"], str(solution.about["name"])), wanted)
     state = None if what == MESH else solution.states[find_state(solution, wanted.state)]
     if wanted.suffix == ".csv":

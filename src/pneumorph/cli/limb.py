@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 from pathlib import Path
 from typing import Any
@@ -12,10 +11,10 @@ import typer
 from pneumorph.cli.interrupt import Interrupt
 from pneumorph.cli.output import INTERRUPTED, STOPPED, complain, console
 from pneumorph.cli.progress import progress_on
+from pneumorph.cli.record import keep_record, read_record
 from pneumorph.errors import StorageError
 from pneumorph.geometry import SoftLimb
 from pneumorph.solution import Progress, Solution, Status, solve
-from pneumorph.solution.files import make_folder, write_atomically
 from pneumorph.studies.reproductions.soft_wheel import SYSTEM
 from pneumorph.studies.reproductions.soft_wheel_limb import CASES, LimbStudy
 
@@ -30,7 +29,7 @@ def reproduce_limb(quick: bool, out: Path | None, resume: bool) -> None:
     folder = out or Path("runs") / f"{SYSTEM.name}-limb{'-quick' if quick else ''}"
     words = ["pneumorph", "reproduce", SYSTEM.name, "--part", "limb", *(["--quick"] if quick else [])]
     command = shlex.join([*words, "--out", str(folder)])
-    _keep(folder, study.settings(command), resume)
+    keep_record(folder / RECORD, study.settings(command), ("quick", "limb"), resume)
     screen = console()
     screen.print(f"{SYSTEM.title}, part limb: {len(CASES)} runs\nfolder: {folder}", markup=False)
     mesh = study.mesh()
@@ -72,7 +71,7 @@ def report_limb(folder: Path) -> Path:
     """Write the report of such a folder anew; return its path. Raises StorageError where it is damaged."""
     from pneumorph.report.limb import write_limb_report
 
-    record = _record(folder)
+    record = read_record(folder / RECORD)
     try:
         study = LimbStudy(bool(record["quick"]), SoftLimb(**record["limb"]))
         command = str(record["command"])
@@ -80,24 +79,3 @@ def report_limb(folder: Path) -> Path:
         raise StorageError(f"{folder / RECORD} is damaged: {error!r}") from error
     solutions = {name: Solution.open(folder / name) for name in CASES if (folder / name / "run.json").exists()}
     return write_limb_report(folder, study, solutions, command=command)
-
-
-def _keep(folder: Path, settings: dict[str, Any], resume: bool) -> None:
-    """Write the record of a new folder; check that of one that is resumed. Raises StorageError."""
-    if (folder / RECORD).exists():
-        if not resume:
-            raise StorageError(f"'{folder}' already holds a run: resume it (--resume) or choose another folder")
-        stored = _record(folder)
-        if any(stored.get(key) != json.loads(json.dumps(settings[key])) for key in ("quick", "limb")):
-            raise StorageError(f"'{folder}' holds another run of this part: choose another folder")
-        return
-    make_folder(folder)
-    text = json.dumps(settings, indent=1)
-    write_atomically(folder / RECORD, lambda path: path.write_text(text, encoding="utf-8"))
-
-
-def _record(folder: Path) -> dict[str, Any]:
-    try:
-        return dict(json.loads((folder / RECORD).read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError) as error:
-        raise StorageError(f"{folder / RECORD} cannot be read: {error}") from error

@@ -20,6 +20,7 @@ from pneumorph.mesh.findings import CavityFound, cavities_found, domains_found, 
 from pneumorph.solution.files import make_folder, write_atomically
 from pneumorph.solution.vtkhdf import write_mesh
 from pneumorph.studies import load_study
+from pneumorph.studies.parts import Assembly
 from pneumorph.studies.schema import TEMPLATES
 from pneumorph.studies.writing import to_toml
 from pneumorph.units import parse, show
@@ -29,11 +30,12 @@ _WIDTH = 120  # of tables that go to a file or another program
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """What is looked at: its name, the actuator and its mesh."""
+    """What is looked at: its name, the actuator and its mesh; assembly: all bodies in it, where they are several."""
 
     name: str
     actuator: Actuator
     mesh: Mesh
+    assembly: Assembly | None = None
 
 
 def subject_of(file: str, more: Sequence[Path], unit: str | None, size: str | None) -> Subject:
@@ -50,7 +52,7 @@ def subject_of(file: str, more: Sequence[Path], unit: str | None, size: str | No
         if size is not None:
             raise InputError(f"'{file}': the study says the size of its mesh, leave --size out")
         study = load_study(Path(file))
-        return Subject(study.name, study.actuator, study.mesh())
+        return Subject(study.name, study.actuator, study.mesh(), study.assembly)
     if not suffix and not Path(file).exists():
         raise InputError(f"{unknown_name('template', file, TEMPLATES)}; or a file with {', '.join(SUFFIXES)}, .toml")
     names = (file, *map(str, more))
@@ -63,7 +65,7 @@ def inspect_file(subject: Subject, folder: Path, *, draw: bool, study: Path | No
     out = console()
     if not out.is_terminal:
         out.width = _WIDTH
-    cavities = cavities_found(subject.mesh, subject.actuator)
+    cavities = cavities_found(subject.mesh, subject.assembly or subject.actuator)
     _print_tables(out, subject, cavities)
     make_folder(folder)
     write_mesh(folder / "mesh.vtkhdf", subject.mesh)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
@@ -18,7 +17,8 @@ def reproduce(
     out: Annotated[Path | None, typer.Option(help="Run folder. Default: runs/<name>, with -quick if it is.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the last state in the folder.")] = False,
     part: Annotated[
-        str | None, typer.Option(help="Part of a system; soft-wheel: limb, rigid, reduced, granular.")
+        str | None,
+        typer.Option(help="Part of a system; `pneumorph reproduce` alone lists them."),
     ] = None,
     video: Annotated[str | None, typer.Option(help="Part rigid: draw a film of this run, as curved-3_ramp.")] = None,
     terrain: Annotated[Path | None, typer.Option(help="Part rigid: a further terrain, grey-scale image.")] = None,
@@ -35,9 +35,8 @@ def reproduce(
         for known in reproductions.names():
             item = reproductions.reproduction(known)
             typer.echo(f"{known}: {item.title}. {item.source}")
-            if isinstance(item, reproductions.SystemInParts):
-                for key, meaning in item.parts.items():
-                    typer.echo(f"  --part {key}: {meaning}")
+            for key, meaning in item.parts.items():
+                typer.echo(f"  --part {key}: {meaning}")
         return
 
     chosen = reproductions.reproduction(name)
@@ -72,36 +71,34 @@ def reproduce(
             quick, out, resume, radius=radius, image=terrain, relief=relief, video=video, scheduler=scheduler
         )
         return
-    given: dict[str, object] = {"part": part, "video": video, "terrain": terrain, "relief": relief}
+    given: dict[str, object] = {"video": video, "terrain": terrain, "relief": relief}
     given |= {"beds": beds, "wheels": wheels, "radius": radius}
-    by_sweep = isinstance(chosen, reproductions.SystemBySweep)
-    for option, value in (given if by_sweep else given | {"scheduler": scheduler}).items():
-        if value is not None:
-            raise InputError(f"--{option}: {name} has no parts, so it does not take this option")
     if isinstance(chosen, reproductions.SystemBySweep):
-        from pneumorph.cli.skins import reproduce_skin
+        if part is None:
+            from pneumorph.cli.skins import reproduce_skin
 
-        reproduce_skin(quick, out, resume, scheduler=scheduler)
+            _refuse(given, None)
+            reproduce_skin(quick, out, resume, scheduler=scheduler)
+            return
+        from pneumorph.cli.shapes import reproduce_shapes
+
+        if part not in chosen.parts:
+            raise InputError(f"--part: {part}, allowed for {name}: {', '.join(chosen.parts)}; none for its sweep")
+        _refuse(given | {"scheduler": scheduler}, part)
+        reproduce_shapes(quick, out, resume)
         return
+    for option, value in (given | {"scheduler": scheduler}).items():
+        if value is not None:
+            raise InputError(f"--{option}: {name} does not take this option")
 
-    from pneumorph.cli.reporting import report_reproduction
-    from pneumorph.cli.solving import solve_and_report
+    from pneumorph.cli.reproducing import reproduce_study
 
-    study = chosen.study(quick)
-    folder = out or Path("runs") / (f"{name}-quick" if quick else name)
-    command = shlex.join(["pneumorph", "reproduce", name, *(["--quick"] if quick else []), "--out", str(folder)])
-    solve_and_report(
-        study,
-        folder,
-        resume,
-        command,
-        lambda solution: report_reproduction(solution, chosen, study),
-        about={"reproduction": name, "source": chosen.source},
-    )
+    reproduce_study(chosen, quick, out, resume, part)
 
 
-def _refuse(given: Mapping[str, object], part: str) -> None:
-    """Raise InputError for an option of another part."""
+def _refuse(given: Mapping[str, object], part: str | None) -> None:
+    """Raise InputError for an option of another part; None: of a system by a sweep, without a part."""
     for option, value in given.items():
         if value is not None:
-            raise InputError(f"--{option}: the part '{part}' does not take this option")
+            owner = "the sweep" if part is None else f"the part '{part}'"
+            raise InputError(f"--{option}: {owner} does not take this option")

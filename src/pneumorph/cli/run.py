@@ -19,8 +19,15 @@ def run(
     from pneumorph.cli import reporting
     from pneumorph.cli.solving import solve_and_report
     from pneumorph.studies import load_study
+    from pneumorph.studies.tension import is_tension_table, load_tension
+    from pneumorph.studies.toml_file import read_toml
 
-    loaded = load_study(study)
-    folder = out or Path("runs") / loaded.name
+    folder = out or Path("runs") / study.stem
     command = shlex.join(["pneumorph", "run", str(study), "--out", str(folder)])
+    if is_tension_table(read_toml(study, "study file")):
+        from pneumorph.cli.tension import run_tension
+
+        run_tension(load_tension(study), folder, resume, command, reported=not no_report)
+        return
+    loaded = load_study(study)
     solve_and_report(loaded, folder, resume, command, None if no_report else reporting.report_study)

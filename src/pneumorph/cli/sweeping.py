@@ -1,15 +1,19 @@
-"""What `pneumorph sweep` shows: a bar with the time left on a terminal, else one plain line for each design."""
+"""What `pneumorph sweep` shows: a bar with the time left on a terminal, else one plain line for each design.
+
+And the report of its folder, written anew.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from pneumorph.cli.progress import clock
-from pneumorph.studies.sweeps import Design, Sweep, SweepProgress, SweepTable
+from pneumorph.studies.sweeps import Design, Sweep, SweepFolder, SweepProgress, SweepTable, load_sweep, stored_table
 
 
 @contextmanager
@@ -56,3 +60,20 @@ def summary(table: SweepTable) -> str:
     """Return '10 done, 1 failed, 1 refused of 12 designs'."""
     counts = {status: table.count(status) for status in dict.fromkeys(table.statuses)}
     return f"{', '.join(f'{count} {status}' for status, count in counts.items())} of {len(table)} designs"
+
+
+def is_sweep(folder: Path) -> bool:
+    """Return whether a folder holds a sweep."""
+    return SweepFolder(folder).sweep.is_file() and SweepFolder(folder).designs.is_dir()
+
+
+def report_sweep(folder: Path) -> Path:
+    """Write the report of a sweep's folder anew, of the designs that ended; return its path.
+
+    Raises StorageError for damaged files, InputErrors for a sweep.toml that was changed to something wrong.
+    """
+    from pneumorph.report.sweep_report import write_sweep_report
+
+    sweep = load_sweep(SweepFolder(folder).sweep)
+    command = f"pneumorph sweep {SweepFolder(folder).sweep} --out {folder}"
+    return write_sweep_report(sweep, stored_table(sweep, folder), folder, command)

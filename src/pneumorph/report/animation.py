@@ -76,7 +76,7 @@ def frames(drawing: Drawing, field: Field, states: Sequence[State]) -> Iterator[
             for moment in moments:
                 place = _between([state.positions for state in states], moment)
                 colour = _between(values, moment)
-                bodies = drawing.bodies.layers(_driven(states, moment))
+                bodies = drawing.bodies.layers(_driven(states, moment), place)
                 columns[-1].append(scene.draw([*layers(place, colour, (low, high), field), *bodies]))
     shown = None
     for number, moment in enumerate(moments):

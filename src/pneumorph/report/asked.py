@@ -19,15 +19,14 @@ from pneumorph.units import show
 
 def asked_tables(solution: Solution) -> list[Table]:
     """Return the tables of what a run was asked; dimensions only where the run keeps its study."""
-    actuator = _actuator(solution.about)
-    tables = [dimensions_table(actuator)] if actuator is not None else []
+    tables = [dimensions_table(body, part) for part, body in _bodies(solution.about).items()]
     tables.append(materials_table(solution.model.materials))
     tables += _boundary_tables(solution.model)
     return [*tables, programme_table(solution.model, solution.programme)]
 
 
-def dimensions_table(actuator: Actuator) -> Table:
-    """Return the dimensions of an actuator, each given by the source or assumed."""
+def dimensions_table(actuator: Actuator, part: str = "") -> Table:
+    """Return the dimensions of an actuator, or of a part of the study, each given by the source or assumed."""
     rows = [
         (
             d.help, d.symbol, Cell(f"{d.value:g}" if d.kind == "count" else show(float(d.value), d.kind), number=True),
@@ -36,7 +35,8 @@ def dimensions_table(actuator: Actuator) -> Table:
         for d in actuator.dimensions()
     ]  # fmt: skip
     name = "".join(f" {c.lower()}" if c.isupper() else c for c in type(actuator).__name__).strip()
-    return Table(f"Dimensions: {name}", ("Dimension", "Symbol", "Value", "Source"), tuple(rows))
+    title = f"Dimensions of '{part}': {name}" if part else f"Dimensions: {name}"
+    return Table(title, ("Dimension", "Symbol", "Value", "Source"), tuple(rows))
 
 
 def materials_table(materials: Mapping[str, Material]) -> Table:
@@ -113,7 +113,18 @@ def _boundary_tables(model: Model) -> list[Table]:
         result.append(Table("Cavities", ("Cavity", "Supply", "Faces", "Volume at rest"), tuple(cavities)))
     tubes = tuple((" and ".join(tube.between), _with_numbers(tube)) for tube in model.tubes)
     result += [Table("Tubes", ("Between", "Line"), tubes)] if tubes else []
+    result += [_bodies_table(model)] if model.frames else []
     return [*result, _contact_table(model)] if model.contacts else result
+
+
+def _bodies_table(model: Model) -> Table:
+    """Return the free rigid bodies: kind of surface, mass, centre at the start."""
+    rows = []
+    for body, frame in zip(model.free_bodies, model.frames, strict=True):
+        centre = ", ".join(f"{x:.4g}" for x in frame.rest.mean(axis=0))
+        mass = Cell(f"{1e6 * frame.mass:.4g} g", number=True)
+        rows.append((body.name, type(body.surface).__name__, mass, f"({centre}) mm"))
+    return Table("Free bodies", ("Body", "Surface", "Mass", "Centre of mass at the start"), tuple(rows))
 
 
 def _contact_table(model: Model) -> Table:
@@ -134,12 +145,12 @@ def _with_numbers(item: Supply | Tube) -> str:
     return ", ".join([type(item).__name__.removesuffix("Supply").lower(), *numbers])
 
 
-def _actuator(about: Mapping[str, Any]) -> Actuator | None:
-    """Return the actuator of the study that a run keeps, None where there is none that can be read."""
+def _bodies(about: Mapping[str, Any]) -> Mapping[str, Actuator]:
+    """Return part, '' for the actuator -> body of the study that a run keeps; none where none can be read."""
     study = about.get("study")
     if not isinstance(study, dict):
-        return None
+        return {}
     try:
-        return study_from(study, str(about.get("name", "study"))).actuator
+        return study_from(study, str(about.get("name", "study"))).assembly.bodies
     except InputError:
-        return None
+        return {}

@@ -67,7 +67,9 @@ def read_comparison(folder: Path) -> tuple[Comparison, ...]:
         if tuple(head) != COLUMNS:
             raise ValueError(f"columns {', '.join(head)}, expected {', '.join(COLUMNS)}")
         return tuple(
-            Comparison(what, where, float(reported), float(computed) if computed else None, unit, note)
+            Comparison(
+                what, where, float(reported) if reported else None, float(computed) if computed else None, unit, note
+            )
             for what, where, reported, computed, unit, _, note in lines
         )
     except (OSError, ValueError) as error:
@@ -80,10 +82,11 @@ def comparison_table(rows: Sequence[Comparison]) -> Table:
     for row in rows:
         apart = row.relative_difference
         shown = "–" if apart is None else f"{100.0 * apart:+.1f} %"
+        reported = "–" if row.reported is None else f"{row.reported:.4g}"
         computed = "not reached" if row.computed is None else f"{row.computed:.4g}"
         body.append(
             (
-                row.quantity, row.condition, Cell(f"{row.reported:.4g}", number=True), Cell(computed, number=True),
+                row.quantity, row.condition, Cell(reported, number=True), Cell(computed, number=True),
                 row.unit, Cell(shown, _tone(apart), number=True), row.note,
             )
         )  # fmt: skip

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from pneumorph.mechanics.supports import AXES
 from pneumorph.report.figures import Curve
 from pneumorph.report.findings import is_part
 from pneumorph.solution import Solution
 
 _BESIDE = {"strain_energy", "supply_work", "load_work", "viscous_loss", "energy_error", "iterations"}
 _BESIDE |= {"clock", "kinetic_energy", "numerical_loss", "contact_energy", "friction_loss"}
-# columns of force components -> title of the figure
-_FORCES = {"contact_force_": "Force in contact", "body_force_": "Force on body"}
+# columns of vectors, without the letter of the axis -> title of the figure that their components share
+_VECTORS = {
+    "body_": "Centre of", "body_rotation_": "Rotation of", "body_velocity_": "Velocity of",
+    "contact_force_": "Force in contact", "body_force_": "Force on body",
+}  # fmt: skip
 _BESIDE |= {"unstable_modes", "smallest_volume_ratio", "index", "phase", "time"}
 
 
@@ -32,7 +36,7 @@ def default_curves(solution: Solution) -> list[Curve]:
     history, over = solution.history, driver(solution)
     beside = ("pressure:", "volume:", "added_volume:", "value:")
     columns = [c for c in history.columns if c.key not in _BESIDE and not c.key.startswith(beside)]
-    measures = [c for c in columns if not c.key.startswith(tuple(_FORCES))]
+    measures = [c for c in columns if _vector(c.key) is None]
     result = []
     angles = tuple(c.key for c in measures if c.kind == "angle")
     if angles:
@@ -43,9 +47,10 @@ def default_curves(solution: Solution) -> list[Curve]:
         values = history.values(column.key)
         if column.kind != "angle" and np.isfinite(values).any() and np.ptp(values[np.isfinite(values)]) > 0.0:
             result.append(Curve(column.label.capitalize(), over, (column.key,)))
-    for prefix, title in _FORCES.items():  # the components of a force share a figure
-        for owner in dict.fromkeys(c.key.partition(":")[2] for c in columns if c.key.startswith(prefix)):
-            keys = tuple(c.key for c in columns if c.key.startswith(prefix) and c.key.partition(":")[2] == owner)
+    for prefix, title in _VECTORS.items():
+        vectors = [c for c in columns if _vector(c.key) == prefix]
+        for owner in dict.fromkeys(c.key.partition(":")[2] for c in vectors):
+            keys = tuple(c.key for c in vectors if c.key.partition(":")[2] == owner)
             if any(history.values(key).any() for key in keys) and not is_part(keys[0]):
                 result.append(Curve(f"{title} {owner}", over, keys))
     if over == "clock":
@@ -56,3 +61,9 @@ def default_curves(solution: Solution) -> list[Curve]:
         cavity = over.removeprefix("pressure:")
         result.append(Curve("Pressure and volume", f"added_volume:{cavity}", (over,)))
     return result
+
+
+def _vector(key: str) -> str | None:
+    """Return the prefix of a column that holds a component of a vector, such as body_force_z:cup; None for others."""
+    prefix, axis = key.partition(":")[0][:-1], key.partition(":")[0][-1:]
+    return prefix if prefix in _VECTORS and axis in AXES else None

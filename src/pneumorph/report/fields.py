@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumorph.measures import contact_pressure
 from pneumorph.mechanics import State
 from pneumorph.mechanics import fields as mechanics_fields
 from pneumorph.mechanics.fields import BlockFields
@@ -19,13 +20,17 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Field:
-    """A scalar field: `values(state)` are (nodes,) in inside units; `start` is its value at rest."""
+    """A scalar field: `values(state)` are (nodes,) in inside units; `start` is its value at rest.
+
+    share: of the nodes that have a colour of their own; what is higher has that of the scale's end.
+    """
 
     key: str
     label: str
     kind: str
     values: Callable[[State], Array]
     start: float = 0.0
+    share: float = 0.998
 
     @property
     def colour_map(self) -> str:
@@ -41,10 +46,10 @@ class Field:
     def limits(self, values: Sequence[Array]) -> tuple[float, float, float]:
         """Return the ends of the colour scale and the largest value for nodal values of states, in inside units.
 
-        The scale ends where all but the highest 0.2 % of the nodes lie: at the edge of a clamp a stress is singular,
-        and a scale up to it would show nothing else.
+        The scale ends where `share` of the nodes lie, mostly all but the highest 0.2 %: at the edge of a clamp a stress
+        is singular, and a scale up to it would show nothing else.
         """
-        high = max(float(np.quantile(v, 0.998)) for v in values)
+        high = max(float(np.quantile(v, self.share)) for v in values)
         return self.start, max(high, self.start + 1e-12), max(float(v.max()) for v in values)
 
     def printed(self, value: float) -> float:
@@ -54,7 +59,9 @@ class Field:
 
 def displacement(state: State) -> Array:
     """Return the size of the displacement (nodes,), mm."""
-    return np.asarray(np.linalg.norm(state.displacement, axis=1))
+    size = np.asarray(np.linalg.norm(state.displacement, axis=1))
+    size[state.model.mesh.solid :] = 0.0  # the colours are those of the soft body, not of a rigid one that falls
+    return size
 
 
 def von_mises(state: State) -> Array:
@@ -79,3 +86,5 @@ FIELDS = (
     Field("von_mises", "Von Mises stress (Cauchy)", "stress", von_mises),
     Field("stretch", "Largest principal stretch", "number", largest_stretch, start=1.0),
 )
+# most nodes touch nothing: those that do are what it is about
+CONTACT_PRESSURE = Field("contact_pressure", "Contact pressure", "pressure", contact_pressure, share=1.0)

@@ -13,6 +13,7 @@ from pneumorph.solution import Column, Solution, Status
 from pneumorph.units import printed_unit, show, to_printed
 
 _BALANCE = 0.02  # relative error of the energy balance that passes
+_RIGID = 1e-4  # strain of a free rigid body that passes
 _LOSS = 0.01  # share of the work that regularisation may take
 _PLAIN = ("index", "phase", "time", "strain_energy", "supply_work", "load_work", "viscous_loss", "energy_error")
 _SOLVER = ("iterations", "unstable_modes", "smallest_volume_ratio")
@@ -111,7 +112,11 @@ def _contact_rows(solution: Solution) -> list[tuple[str, str, str, bool]]:
         return []
     least = solution.history.smallest("contact_distance:")
     text = "none within reach" if least is None else show(least, "length", 3)
-    return [("Smallest distance in contact", text, "more than 0", least is None or least > 0.0)]
+    rows = [("Smallest distance in contact", text, "more than 0", least is None or least > 0.0)]
+    for name in (frame.name for frame in solution.model.frames):
+        strain = float(solution.history.values(f"body_strain:{name}").max())
+        rows.append((f"Strain of the rigid body {name}", f"{strain:.1e}", f"at most {_RIGID:.0e}", strain <= _RIGID))
+    return rows
 
 
 def mesh_table(solution: Solution, quality: Quality) -> Table:
@@ -160,7 +165,7 @@ def _shown(solution: Solution) -> list[Column]:
         elif pressure.any():
             groups.append([cavity])
     result = [Column(f"pressure:{g[0]}", f"gauge pressure in {', '.join(g)}", "pressure") for g in groups]
-    beside = ("pressure:", "volume:", "added_volume:")
+    beside = ("pressure:", "volume:", "added_volume:", "body_velocity_", "body_rotation_", "body_strain:")
     result += [c for c in history.columns if not (c.key in _INSIDE or c.key.startswith(beside) or is_part(c.key))]
     result += [history.column(f"added_volume:{cavity}") for g in groups for cavity in g]
     return [*result, history.column("unstable_modes")]

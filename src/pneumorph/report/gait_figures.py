@@ -9,7 +9,7 @@ import numpy as np
 
 from pneumorph.errors import InputError
 from pneumorph.gaits import Foot, Locomotion, locomotion
-from pneumorph.mechanics import Programme
+from pneumorph.mechanics import Pipe, Programme
 from pneumorph.report import style
 from pneumorph.report.figures import Curve, named, new_figure, printed, styled, svg
 from pneumorph.report.tables import Cell, Table
@@ -76,8 +76,9 @@ def gait_curves(solution: Solution) -> list[Curve]:
 
 
 def gait_table(solution: Solution) -> Table | None:
-    """Return displacement, slip and cost of transport of each finished cycle along x; None where there is no gait.
+    """Return displacement, slip and cost of transport of each finished cycle; None where there is no gait.
 
+    Forward is along x, in a pipe along its axis.
     A gait is a run whose study has a [cycle], with gravity, over a body that faces touch with friction.
     """
     ends = cycle_ends(solution)
@@ -85,6 +86,9 @@ def gait_table(solution: Solution) -> Table | None:
     if not ends or not feet or "gravity" not in {load.name for load in solution.model.loads}:
         return None
     forward = (1.0, *(0.0,) * (solution.model.mesh.dimension - 1))
+    for contact in solution.model.contacts:
+        if isinstance(contact.against, Pipe) and contact.against.axis:
+            forward = contact.against.axis
     return _table(locomotion(solution.states, ends, feet, forward))
 
 

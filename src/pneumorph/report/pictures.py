@@ -63,7 +63,7 @@ def mesh_picture(drawing: Drawing) -> Picture:
 def field_picture(drawing: Drawing, field: Field, state: State, scale: Sequence[State] | None = None) -> Picture:
     """Return a state coloured by a field, outside and cut; `scale`: the states that set the ends of the colours."""
     low, high, largest = drawing.limits(field, scale or [state])
-    values, bodies = drawing.values(field, state), drawing.bodies.layers(state.values)
+    values, bodies = drawing.values(field, state), drawing.bodies.layers(state.values, state.positions)
     with Scene(drawing.view, height_of(drawing.view)) as scene:
         panels = [(caption(state), scene.draw([*drawing.body(state.positions, values, (low, high), field), *bodies]))]
     if not drawing.flat:
@@ -81,7 +81,8 @@ def shapes_picture(drawing: Drawing, field: Field, states: Sequence[State]) -> P
         panels = []
         for state in states:
             layers = drawing.body(state.positions, drawing.values(field, state), (low, high), field)
-            panels.append((caption(state), scene.draw([*layers, *drawing.bodies.layers(state.values)])))
+            bodies = drawing.bodies.layers(state.values, state.positions)
+            panels.append((caption(state), scene.draw([*layers, *bodies])))
     return compose(panels, bar=bar(field, low, high, largest), columns=_columns([p for _, p in panels]))
 
 

@@ -58,7 +58,7 @@ def write_skin_report(
         source=skins.SYSTEM.source,
         command=command,
         notes=list(skins.NOTES),
-        comparison=_findings_table(found),
+        comparison=findings_table(found),
         shapes_head=("Trends and map", "Trends and map"),
         beside=f"Table of designs, the page {designs.relative_to(folder)} of the sweep, their histories, and figures",
     )
@@ -108,7 +108,8 @@ def _times(table: SweepTable) -> list[tuple[str, str]]:
     return [(f"{np.nansum(seconds) / 60.0:.0f} min", "of one core")]
 
 
-def _findings_table(found: Sequence[Finding]) -> Table:
+def findings_table(found: Sequence[Finding]) -> Table:
+    """Return the table of statements: what was computed, and whether it holds."""
     rows = []
     for item in found:
         row = item.row

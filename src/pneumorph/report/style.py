@@ -33,7 +33,7 @@ OBSTACLE = rgb("#7d8a97")
 _ROLES = {"clamp": "#44546a", "tip": "#f0c808", "outer": "#d9cfc3", "core": "#a9b7c0", "unnamed": "#eeeeee"}
 _OTHERS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#7b3294", "#e69f00", "#66a182", "#b2182b")
 
-COLOUR_MAPS = {"length": "BuPu", "stress": "YlOrRd", "number": "YlGnBu"}
+COLOUR_MAPS = {"length": "BuPu", "stress": "YlOrRd", "pressure": "YlOrRd", "number": "YlGnBu"}
 
 RC: Any = {
     "font.family": "DejaVu Sans", "font.size": 9.5, "axes.titlesize": 10.5, "axes.titleweight": "bold",

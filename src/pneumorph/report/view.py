@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumorph.mechanics import State
+from pneumorph.mechanics.contact.apart import body_of_nodes
 from pneumorph.mesh.mesh import Mesh
 from pneumorph.report.cut import Plane
 from pneumorph.report.surface import spatial
@@ -67,17 +68,19 @@ def face_on(states: Sequence[State]) -> View:
     """Return the view onto the plane in which the body bends, fitted to all states.
 
     The plane holds the longest side of the body at rest and the mean motion, across it, of the nodes that move most.
-    A body that does not bend is seen along the shortest side of its box.
+    A body that does not bend is seen along the shortest side of its box. Of several bodies that one counts that moves
+    most.
     """
     mesh = states[0].model.mesh
     clouds = [mesh.points, *(state.positions for state in states)]
     if mesh.dimension == 2:
         return View((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)).fitted(clouds)
-    along = long_axis(mesh)
+    own = mesh.points[_moving_most(states)]
+    along = _longest(own)
     across = max((_sideways(state, along) for state in states), key=lambda motion: float(np.linalg.norm(motion)))
     if np.linalg.norm(across) < 0.01 * mesh.size:
         beside = np.eye(3) - np.outer(along, along)  # rows: the axes without their part along the body
-        extents = np.ptp(mesh.points, axis=0) * np.linalg.norm(beside, axis=1)
+        extents = np.ptp(own, axis=0) * np.linalg.norm(beside, axis=1)
         across = beside[int(np.argmax(extents))]
     direction = _snapped(np.cross(along, across))
     # z stands upright unless it points at the camera; of the two sides, the one from which x or y runs to the right
@@ -94,17 +97,19 @@ def cut_plane(states: Sequence[State], view: View) -> tuple[Plane, View]:
     """Return a plane along the body through its largest pressurised cavity, and the view onto it.
 
     The plane holds the longest side of the body at rest, its middle, and the middle of the cavity with the highest
-    pressure of all states; where these lie in line, it is the bending plane.
+    pressure of all states; where these lie in line, it is the bending plane. Of several bodies that one counts that
+    moves most.
     """
     mesh = states[0].model.mesh
-    middle = 0.5 * (mesh.points.min(axis=0) + mesh.points.max(axis=0))
+    own = mesh.points[_moving_most(states)]
+    middle = 0.5 * (own.min(axis=0) + own.max(axis=0))
     normal = np.array(view.direction)
     surfaces = states[0].model.surfaces
     if surfaces:
         name = max(surfaces, key=lambda one: max(abs(state.pressure[one]) for state in states))
         nodes = np.unique(np.concatenate([block.nodes.ravel() for block in surfaces[name].blocks]))
         box = mesh.points[nodes]
-        along = long_axis(mesh)
+        along = _longest(own)
         offset = 0.5 * (box.min(axis=0) + box.max(axis=0)) - middle
         offset -= along * (along @ offset)
         if np.linalg.norm(offset) > 0.02 * mesh.size:
@@ -121,13 +126,27 @@ def cut_plane(states: Sequence[State], view: View) -> tuple[Plane, View]:
 
 def long_axis(mesh: Mesh) -> Array:
     """Return the coordinate direction in which a solid is longest."""
-    return np.eye(3)[int(np.argmax(np.ptp(mesh.points, axis=0)))]
+    return _longest(mesh.points[: mesh.solid])
+
+
+def _longest(points: Array) -> Array:
+    return np.eye(3)[int(np.argmax(np.ptp(points, axis=0)))]
+
+
+def _moving_most(states: Sequence[State]) -> NDArray[np.int64]:
+    """Return the nodes of the connected body that moves most, by the mean over its nodes; of all in a single one."""
+    mesh = states[0].model.mesh
+    label = body_of_nodes(mesh)[: mesh.solid]
+    moved = np.max([np.linalg.norm(state.displacement[: mesh.solid], axis=1) for state in states], axis=0)
+    mean = np.bincount(label, moved) / np.bincount(label)
+    return np.flatnonzero(label == int(np.argmax(mean)))
 
 
 def _sideways(state: State, along: Array) -> Array:
     """Return the mean displacement, across the axis, of the hundredth part of the nodes that moves most, mm."""
-    size = np.linalg.norm(state.displacement, axis=1)
-    mean = state.displacement[size >= np.quantile(size, 0.99)].mean(axis=0)
+    moved = state.displacement[: state.model.mesh.solid]
+    size = np.linalg.norm(moved, axis=1)
+    mean = moved[size >= np.quantile(size, 0.99)].mean(axis=0)
     return np.asarray(mean - along * (along @ mean))
 
 

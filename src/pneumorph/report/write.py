@@ -174,7 +174,8 @@ def _add_pictures(page: Page, keep: _Keeper, solution: Solution, marked: Sequenc
     """Draw the mesh, the shapes and the animation; raises EngineError where that is impossible."""
     from pneumorph.report import animation, pictures
     from pneumorph.report.drawing import Drawing
-    from pneumorph.report.fields import FIELDS
+    from pneumorph.report.fields import CONTACT_PRESSURE, FIELDS
+    from pneumorph.report.part_pictures import part_pictures, touched_most
     from pneumorph.report.render import check
 
     check()
@@ -196,6 +197,12 @@ def _add_pictures(page: Page, keep: _Keeper, solution: Solution, marked: Sequenc
     for field in FIELDS:
         text = f"{field.label} in state {last.index}, at {pictures.caption(last)}. {rest}"
         page.shapes.append(keep.picture(field.key, text, pictures.field_picture(drawing, field, last)))
+    if (touched := touched_most(solution)) is not None:
+        text = f"{CONTACT_PRESSURE.label} in state {touched.index}, at {pictures.caption(touched)}: the run's largest."
+        page.shapes.append(
+            keep.picture("contact-pressure", text, pictures.field_picture(drawing, CONTACT_PRESSURE, touched))
+        )
+    page.shapes += [keep.picture(*item) for item in part_pictures(solution)]
     film = keep.folder / "animation.mp4"
     try:
         poster = animation.write_animation(Drawing(states, _FILM), FIELDS[2], states, film)

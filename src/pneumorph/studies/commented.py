@@ -129,7 +129,9 @@ class _Writer:
         return lines + [f"# {toml_key(key)} = {toml_value(t)}" for t in tables if len(t) > 1 and t != shown]
 
     def tables_in_line(self, item: Schema) -> list[Schema]:
-        """Return the tables that may be the value of a key."""
+        """Return the tables that may be the value of a key, unless the schema has an example of it."""
+        if "examples" in item:
+            return []
         return [table for option in (item, *item.get("anyOf", ())) for table in self.variants(option)]
 
     def choices(self, item: Schema) -> list[str]:
@@ -144,6 +146,8 @@ class _Writer:
         for given in (item.get("default"), item.get("const"), *item.get("enum", ())[:1], self.words.get(key)):
             if given not in (None, [], {}):
                 return given
+        if any(isinstance(given, Mapping) for given in item.get("examples", ())):
+            return item["examples"][0]
         if "$ref" in item:
             item = self.variants(item)[0]
         if "properties" in item:

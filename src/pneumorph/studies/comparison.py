@@ -14,11 +14,14 @@ COLUMNS = ("quantity", "condition", "reported", "computed", "unit", "relative_di
 
 @dataclass(frozen=True)
 class Comparison:
-    """One row: a reported number and the computed one, None where the run did not get there; both in `unit`."""
+    """One row: a reported number and the computed one, both in `unit`.
+
+    reported: None where the study gives none. computed: None where the run did not get there.
+    """
 
     quantity: str
     condition: str
-    reported: float
+    reported: float | None
     computed: float | None
     unit: str
     note: str = ""
@@ -26,7 +29,7 @@ class Comparison:
     @property
     def relative_difference(self) -> float | None:
         """(computed - reported) / |reported|, None where one of them is missing or the reported one is zero."""
-        if self.computed is None or self.reported == 0.0:
+        if self.computed is None or not self.reported:
             return None
         return (self.computed - self.reported) / abs(self.reported)
 

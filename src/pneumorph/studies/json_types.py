@@ -43,10 +43,10 @@ def size_schema() -> JsonSchema:
     return {"anyOf": [{"enum": ["automatic", "coarse"]}, quantity_schema("length")]}
 
 
-def place_schema() -> JsonSchema:
-    """Return the schema of a point: three lengths, two in plane models."""
-    lengths = [quantity_schema("length")] * 3
-    return {"type": "array", "prefixItems": lengths, "minItems": 2, "maxItems": 3}
+def place_schema(most: int = 3) -> JsonSchema:
+    """Return the schema of a point: three lengths, two in plane models; most: how many at most."""
+    lengths = [quantity_schema("length")] * most
+    return {"type": "array", "prefixItems": lengths, "minItems": 2, "maxItems": most}
 
 
 def direction_schema() -> JsonSchema:

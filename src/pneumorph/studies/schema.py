@@ -25,9 +25,13 @@ from pneumorph.geometry import (
     Actuator,
     BendingSkin,
     Finger,
+    Forearm,
+    Gripper,
     HexagonalPrism,
+    PipeRobot,
     PlaneCrawler,
     PneuNet,
+    Quadruped,
     SoftLimb,
     ThickSphere,
     ThickTube,
@@ -37,16 +41,21 @@ from pneumorph.mechanics import Settings
 from pneumorph.studies.direction import Direction
 from pneumorph.studies.importing import ImportedSection
 from pneumorph.studies.json_types import AloneOrByName, any_quantity_schema, size_schema
+from pneumorph.studies.placing import TurnSection
 from pneumorph.studies.section import IMPORTED, LIBRARY, Section, quantity, section_of, write
 from pneumorph.studies.supplies import SUPPLY_SECTIONS, AtmosphereSection, SupplySection, TubeSection
-from pneumorph.studies.touching import BODY_SECTIONS, BodySection, ContactSection
+from pneumorph.studies.touching import BODY_SECTIONS, BodySection, ContactSection, Place
 from pneumorph.units import parse
 
 TEMPLATES: dict[str, type[Actuator]] = {
     "crawler-2d": PlaneCrawler,
     "finger": Finger,
+    "forearm": Forearm,
+    "gripper": Gripper,
     "hexagonal-prism": HexagonalPrism,
+    "pipe-robot": PipeRobot,
     "pneunet": PneuNet,
+    "quadruped": Quadruped,
     "skinned-tube": BendingSkin,
     "soft-limb": SoftLimb,
     "thick-sphere": ThickSphere,
@@ -103,6 +112,17 @@ MaterialSection: Any = Annotated[
 ]
 
 
+def _joined(value: Any) -> Any:
+    """arm.cavity = "..." is a table in a table in TOML: it means the name "arm.cavity"."""
+    if not isinstance(value, Mapping):
+        return value
+    flat: dict[Any, Any] = {}
+    for name, item in value.items():
+        for own, one in item.items() if isinstance(item, Mapping) else (("", item),):
+            flat[f"{name}.{own}" if own else name] = one
+    return flat
+
+
 def _by_domain(value: Any) -> Any:
     """[material] stands for all domains unless every entry is a table of its own."""
     if isinstance(value, Mapping) and value and not all(isinstance(item, Mapping | Section) for item in value.values()):
@@ -131,6 +151,7 @@ class MeshSection(Section):
     grading: how fast the size may change, above 0 (slowly) to 1; automatic 0.8.
     detail: how much short edges refine their surroundings, 1 for a cell no larger than the edge; automatic 1, coarse
         0.2.
+    hexahedra: a block grid in place of tetrahedra, from wall to wall unless a size is given; finger, hexagonal-prism.
     homogenised: a closed layer with the law of its lattice in place of a skin; only for skinned-tube.
     """
 
@@ -140,7 +161,29 @@ class MeshSection(Section):
     wall_size: quantity("length") | None = None  # type: ignore[valid-type]
     grading: float | None = None
     detail: float | None = None
+    hexahedra: bool = False
     homogenised: bool = False
+
+
+# one material for all domains, or one for each
+Materials = Annotated[dict[str, MaterialSection], BeforeValidator(_by_domain), AloneOrByName()]
+
+
+class PartSection(Section):
+    """A further body, called by its name: its faces, cavities and domains are "NAME.skin" and so on.
+
+    actuator: what it is, with the keys of [actuator].
+    material: what it is made of, as in [material].
+    mesh: how fine its mesh is, with the keys of [mesh].
+    turn: turns, one after the other, from where the template or the file has it.
+    shift: how far it is moved after them.
+    """
+
+    actuator: ActuatorSection = Field(json_schema_extra={"examples": [{"template": "forearm"}]})
+    material: Materials = Field(default_factory=dict, json_schema_extra={"examples": [{"name": "lsr-finger"}]})
+    mesh: MeshSection = Field(default_factory=MeshSection, json_schema_extra={"examples": [{"size": "coarse"}]})
+    turn: Annotated[tuple[TurnSection, ...], Strict(False)] = ()
+    shift: Place = (0.0, 0.0, 0.0)
 
 
 class GravitySection(Section):
@@ -263,8 +306,10 @@ class PhaseSection(Section):
     """
 
     name: str | None = None
-    targets: dict[str, TargetText]
-    states_at: dict[str, Annotated[tuple[TargetText, ...], Strict(False)]] = Field(default_factory=dict)
+    targets: Annotated[dict[str, TargetText], BeforeValidator(_joined)]
+    states_at: Annotated[dict[str, Annotated[tuple[TargetText, ...], Strict(False)]], BeforeValidator(_joined)] = Field(
+        default_factory=dict
+    )
     first_increment: float = 0.05
     largest_increment: float = 0.2
     smallest_increment: float = 1e-5
@@ -294,11 +339,12 @@ class StudyFile(Section):
     """A study of a soft pneumatic actuator, its sections in the order in which they are written out.
 
     title: title of the report; left out, the name of the file.
-    measures: what is measured in every state, stress and stretch also of one domain, as "peak_von_mises:skin"; left
-        out, both angles where there are a clamp and a tip.
+    measures: what is measured in every state, stress and stretch also of one domain, as "peak_von_mises:skin", and the
+        "normal_force:ground" of a contact; left out, both angles where there are a clamp and a tip.
     actuator: the template and its dimensions; what is left out has the template's value.
     material: one material for all domains, or a table for each domain; left out, that of the published actuator.
     mesh: how fine the mesh is.
+    part: further bodies by name, which supports, contacts and phases refer to.
     gravity: weight; left out, there is none.
     support: how the body is held; left out, "clamp" is clamped and planes of symmetry are kept.
     load: forces and tractions that the phases drive.
@@ -315,10 +361,9 @@ class StudyFile(Section):
     title: str = ""
     measures: Names | None = None
     actuator: ActuatorSection
-    material: Annotated[dict[str, MaterialSection], BeforeValidator(_by_domain), AloneOrByName()] = Field(
-        default_factory=dict
-    )
+    material: Materials = Field(default_factory=dict)
     mesh: MeshSection = Field(default_factory=MeshSection)
+    part: dict[str, PartSection] = Field(default_factory=dict)
     gravity: GravitySection | None = None
     support: Annotated[tuple[SupportSection, ...], Strict(False)] | None = None
     load: Annotated[tuple[LoadSection, ...], Strict(False)] = ()

@@ -170,7 +170,7 @@ def refusal(error: ValidationError, tags: Iterable[str]) -> InputError:
 def _line(item: Any, hidden: set[str]) -> str:
     # names that the user gave may be those of tags
     path = list(zip(item["loc"], ("", *item["loc"]), strict=False))
-    bodies = item["loc"][:1] == ("body",)
+    bodies = item["loc"][:1] in (("body",), ("part",))
     given = [before in ("faces", "caps") or (bodies and n == 1) for n, (_, before) in enumerate(path)]
     place = _path([part for (part, _), own in zip(path, given, strict=True) if own or part not in hidden])
     kind, context, value = item["type"], item.get("ctx", {}), item.get("input")

@@ -25,8 +25,23 @@ _CHOICES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
             "targets": {"PN1": "5 kPa"},
         },
         "finger": {"targets": {"cavity": "40 kPa"}},
+        "forearm": {
+            "support": [{"type": "clamp", "face": "wrist"}, {"type": "clamp", "face": "elbow"}],
+            "load": [{"type": "traction", "face": "skin", "direction": "-z", "name": "press"}],
+            "targets": {"press": "10 kPa"},
+        },
+        "gripper": {"actuator": {"half": True}, "targets": {"cavity_1": "20 kPa"}},
         "hexagonal-prism": {"targets": {"cavity_1": "40 kPa", "cavity_2": "40 kPa"}},
+        "pipe-robot": {
+            "actuator": {"quarter": True, "chambers": 1, "length": "12 mm"},
+            "targets": {"rear_1": "60 kPa", "rear_2": "60 kPa", "middle": "4 kPa"},
+        },
         "pneunet": {"targets": {"cavity": "4 kPa"}},
+        "quadruped": {
+            "actuator": {"half": True},
+            "support": [{"type": "clamp", "face": "belly_front"}, {"type": "symmetry", "face": "symmetry_y"}],
+            "targets": {"PN1": "5 kPa"},
+        },
         "skinned-tube": {"actuator": {"half": True}, "targets": {"cavity": "10 kPa"}},
         "soft-limb": {"actuator": {"half": True}, "targets": {"cavity": "10 kPa"}},
         # a whole sphere has no face to hold it by
@@ -70,7 +85,7 @@ def starter(template: str) -> Study:
         "mesh": {"size": "coarse"},
         "phase": [{"name": "inflate", "targets": dict(choice["targets"])}],
     }
-    table |= {key: choice[key] for key in ("material", "support") if key in choice}
+    table |= {key: choice[key] for key in ("material", "support", "load") if key in choice}
     return study_from(table, template)
 
 
@@ -79,12 +94,16 @@ def starter_text(template: str) -> str:
     study = starter(template)
     actuator = study.actuator
     parts = {"faces": actuator.face_names, "cavities": actuator.cavities, "material domains": actuator.domains}
-    names = "; ".join(f"{what}: {', '.join(names)}" for what, names in parts.items())
-    free = "tip" if "tip" in actuator.face_names else "outer"
+    names = "; ".join(f"{what}: {', '.join(names)}" for what, names in parts.items() if names)
+    free = next(name for name in ("tip", "outer", "skin", "tip_1") if name in actuator.face_names)
     return commented_study(
         study.resolved(),
         (f"{starters()[template]}.", f"{names[0].upper()}{names[1:]}."),
-        {"face": free, "cavity": actuator.cavities[0], "direction": "-z" if actuator.space == "3d" else "-y"},
+        {
+            "face": free,
+            "cavity": (*actuator.cavities, *study.programme.phases[-1].targets)[0],
+            "direction": "-z" if actuator.space == "3d" else "-y",
+        },
     )
 
 

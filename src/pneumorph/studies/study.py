@@ -20,6 +20,7 @@ from pneumorph.mechanics import (
     Clamp,
     Contact,
     Force,
+    FreeBody,
     Gravity,
     Model,
     Motion,
@@ -32,19 +33,23 @@ from pneumorph.mechanics import (
     Traction,
     Tube,
 )
+from pneumorph.mechanics.contact.obstacles import Obstacle
 from pneumorph.mechanics.loads import Load
 from pneumorph.mechanics.supplies.checks import check_driven, check_phases, check_tubes
 from pneumorph.mechanics.supports import Support
-from pneumorph.mesh import Imported, Mesh, generate, inspect
+from pneumorph.mesh import Mesh
+from pneumorph.mesh.assembly import Placement, name_of
 from pneumorph.studies.cycles import cycle_ends, repeated
-from pneumorph.studies.defaults import GRAVITY, actuator_of, completed
+from pneumorph.studies.defaults import GRAVITY, assembly_of, completed
 from pneumorph.studies.homogenised import check_homogenised, homogenised
 from pneumorph.studies.measuring import Measure, measures_of
+from pneumorph.studies.parts import Assembly, check_held, meshed, put_together
+from pneumorph.studies.placing import placement_of
 from pneumorph.studies.schema import TAGS, LibraryMaterial, PhaseSection, StudyFile
 from pneumorph.studies.section import refusal
 from pneumorph.studies.supplies import supply_of, tube_of
 from pneumorph.studies.toml_file import read_toml
-from pneumorph.studies.touching import bodies_of, contacts_of
+from pneumorph.studies.touching import bodies_of, check_free, contacts_of
 from pneumorph.studies.writing import to_toml
 from pneumorph.units import parse, show
 
@@ -75,9 +80,10 @@ class Study:
     file: StudyFile
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "file", completed(self.file, self.actuator))
+        object.__setattr__(self, "file", completed(self.file, self.assembly))
         check_homogenised(self.actuator, self.file.mesh)
-        _ = self.materials, self.supports, self.loads, self.cavities, self.measures, self.settings
+        check_held(self.assembly, self.file)
+        _ = self.placements, self.materials, self.supports, self.loads, self.cavities, self.measures, self.settings
         supplies = {cavity.name: cavity.supply for cavity in self.cavities}
         check_tubes(self.tubes, supplies)
         for phase in self.file.phase:
@@ -85,6 +91,8 @@ class Study:
                 check_driven(str(phase.name), name, supplies)
         check_phases(self.programme.phases, supplies, self.tubes, self.atmosphere)
         _check_driven([name for name in self.kinds if name not in supplies], self.programme)
+        clamped = [item.face for item in self.file.support or () if item.type == "clamp"]
+        check_free(self.file.body, self.file.gravity, self.file.phase, clamped)
         if self.file.gravity is not None:
             for domain, material in self.materials.items():
                 if material.density is None:
@@ -96,14 +104,28 @@ class Study:
         return self.file.title or self.name
 
     @cached_property
+    def assembly(self) -> Assembly:
+        """The actuator and all other bodies."""
+        return assembly_of(self.file)
+
+    @property
     def actuator(self) -> Actuator:
-        """The actuator with its dimensions."""
-        return actuator_of(self.file)
+        """The actuator, which is the main body, with its dimensions."""
+        return self.assembly.main
+
+    @cached_property
+    def placements(self) -> dict[str, Placement]:
+        """Part -> where it stands."""
+        return {name: placement_of(name, item.turn, item.shift) for name, item in self.file.part.items()}
 
     @cached_property
     def materials(self) -> dict[str, Material]:
-        """Domain -> material."""
-        return {domain: _material(section) for domain, section in self.file.material.items()}
+        """Domain -> material, of all bodies."""
+        return {
+            name_of(part, domain): material_of(section)
+            for part, sections in {"": self.file.material, **{k: v.material for k, v in self.file.part.items()}}.items()
+            for domain, section in sections.items()
+        }
 
     @cached_property
     def supports(self) -> tuple[Support, ...]:
@@ -141,7 +163,16 @@ class Study:
     @cached_property
     def contacts(self) -> tuple[Contact, ...]:
         """What may touch what."""
-        return contacts_of(self.file.contact, bodies_of(self.file.body, 3 if self.actuator.space == "3d" else 2))
+        return contacts_of(self.file.contact, self._bodies)
+
+    @cached_property
+    def _bodies(self) -> dict[str, Obstacle | FreeBody]:
+        return bodies_of(self.file.body, 3 if self.actuator.space == "3d" else 2)
+
+    @property
+    def free_bodies(self) -> tuple[FreeBody, ...]:
+        """Rigid bodies with mass."""
+        return tuple(body for body in self._bodies.values() if isinstance(body, FreeBody))
 
     @cached_property
     def atmosphere(self) -> Atmosphere:
@@ -163,6 +194,9 @@ class Study:
         for name in names:
             if names.count(name) > 1 or name in kinds:
                 raise InputError(f"contact '{name}': the name is taken; give the contact another one")
+        for body in self.free_bodies:
+            if body.name in kinds or body.name in names or body.name in self.assembly.face_names:
+                raise InputError(f"body.{body.name}: the name is taken; give the free body another one")
         return kinds
 
     @cached_property
@@ -187,26 +221,23 @@ class Study:
     @cached_property
     def measures(self) -> tuple[Measure, ...]:
         """What is measured in every state; by default all that the actuator's faces allow."""
-        return measures_of(self.file.measures, self.actuator)
+        return measures_of(
+            self.file.measures, self.actuator, self.assembly.domains, [item.name for item in self.contacts]
+        )
 
     def mesh(self) -> Mesh:
-        """Return the mesh; what its quality check warns of goes to the log. Raises MeshError."""
-        if isinstance(self.actuator, Imported):
-            for note in self.actuator.notes:
-                _log.warning("%s", note)
-        section = self.file.mesh
-        size = section.size if isinstance(section.size, float) else None
-        mesh = generate(
-            self.actuator,
-            size,
-            coarse=section.size == "coarse",
-            grading=section.grading,
-            detail=section.detail,
-            wall_size=section.wall_size,
-        )
-        for warning in inspect(mesh).warnings:
-            _log.warning("mesh: %s", warning)
-        return mesh
+        """Return the mesh of all bodies; what the quality check warns of goes to the log.
+
+        Raises MeshError, and InputError for bodies that intersect.
+        """
+        return self._with_parts(meshed(self.actuator, self.file.mesh))
+
+    def _with_parts(self, main: Mesh) -> Mesh:
+        made = {
+            name: (meshed(self.assembly.parts[name], item.mesh, f"part.{name}: "), self.placements[name])
+            for name, item in self.file.part.items()
+        }
+        return put_together(main, made)
 
     def build(self) -> Problem:
         """Return model, programme, measures and settings; meshes. Raises MeshError, LeakingCavityError."""
@@ -214,12 +245,14 @@ class Study:
             for instability in instabilities(material, *USUAL_RANGE):
                 _log.warning("material of '%s': %s", domain, instability)
         if self.file.mesh.homogenised:
-            mesh, materials = homogenised(self.actuator, self.file.mesh, self.materials)
+            main, materials = homogenised(self.actuator, self.file.mesh, self.materials)
+            mesh = self._with_parts(main)
+            materials |= {name: self.materials[name] for name in self.assembly.domains if self.assembly.owner(name)[0]}
         else:
             mesh, materials = self.mesh(), self.materials
         model = Model(
             mesh, materials, self.supports, self.loads, self.cavities,
-            tubes=self.tubes, atmosphere=self.atmosphere, contacts=self.contacts,
+            tubes=self.tubes, atmosphere=self.atmosphere, contacts=self.contacts, free_bodies=self.free_bodies,
         )  # fmt: skip
         return Problem(model, self.programme, self.measures, self.settings)
 
@@ -227,7 +260,7 @@ class Study:
         """Return the study as plain data with every default written out, quantities as text with units."""
         data = self.file.model_dump(exclude_none=True)
         data["phase"] = [{key: value for key, value in item.items() if value != {}} for item in data["phase"]]
-        for key in ("load", "tube", "body", "contact"):
+        for key in ("part", "load", "tube", "body", "contact"):
             if not data[key]:
                 del data[key]
         return data | {"title": self.title, "measures": [measure.name for measure in self.measures]}
@@ -267,7 +300,8 @@ def _fields(section: Any, *but: str) -> dict[str, Any]:
     return {name: getattr(section, name) for name in type(section).model_fields if name not in but}
 
 
-def _material(section: Any) -> Material:
+def material_of(section: Any) -> Material:
+    """Return the material of a [material] section."""
     constants = _fields(section, "law", "name", "prony")
     if section.prony is not None:
         constants["prony"] = Prony(**_fields(section.prony))

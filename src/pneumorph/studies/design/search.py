@@ -100,6 +100,27 @@ def search(
     for study, share in zip(studies, shares, strict=True):
         missing = max(0, share - len(study.trials))
         study.optimize(lambda trial: rod.deviation(rod.proposed(trial)).rms, n_trials=missing, callbacks=[tell])
+    return _best(rod, studies)
+
+
+def found_in(task: DesignTask, law: TableLaw, storage: Path) -> Found:
+    """Return what a search that ended has found, from its journal.
+
+    Raises StorageError for a journal that is missing, damaged, or of a search that was broken off.
+    """
+    engine = optuna()
+    if not storage.is_file():
+        raise StorageError(f"'{storage}' is missing: the search was not started; go on with --resume")
+    studies = [_study(engine, task, storage, start) for start in range(task.file.search.starts)]
+    ended = [len(study.trials) for study in studies]
+    if any(count < share for count, share in zip(ended, _shares(task.file.search.trials, len(ended)), strict=True)):
+        raise StorageError(
+            f"'{storage}' holds {sum(ended)} of {task.file.search.trials} trials: go on with --resume, then report"
+        )
+    return _best(_Rods(task, law), studies)
+
+
+def _best(rod: _Rods, studies: list[Any]) -> Found:
     best = rod.proposed(min(studies, key=lambda study: float(study.best_value)).best_trial)
     values = [trial.value for study in studies for trial in study.trials]
     known = np.array([math.inf if value is None else value for value in values])

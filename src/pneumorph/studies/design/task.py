@@ -26,6 +26,7 @@ from pneumorph.studies.toml_file import read_toml
 from pneumorph.studies.writing import to_toml
 
 MEASURES = ("tip_rotation", TURN, LENGTH)
+POINTS = "target.csv"  # beside a written target file
 _SEARCHED = ("template", "cells_along", "cells_around", "reentrant", "cg", "segment", "blend", "half")
 _BEYOND = 2.0  # stretch that no tube of the table has: what is longer is refused before it is computed
 
@@ -159,8 +160,18 @@ class DesignTask:
         return study_from(table | {"title": f"{self.title}: the design found"}, f"{self.name}-found")
 
     def text(self) -> str:
-        """Return the target file with all defaults."""
-        return to_toml(self.file.model_dump(exclude_none=True) | {"title": self.title})
+        """Return the target file with all defaults; one with points of its own names `POINTS`, see `points_text`."""
+        data = self.file.model_dump(exclude_none=True) | {"title": self.title}
+        if self.file.target.file is not None:
+            data["target"] = {**data["target"], "file": POINTS}
+        return to_toml(data)
+
+    def points_text(self) -> str | None:
+        """Return the points of a target from a file, as it is placed, as such a file; None of a named curve."""
+        if self.file.target.file is None:
+            return None
+        lines = ["x [mm],y [mm],z [mm]", *(",".join(f"{x:.12g}" for x in point) for point in self.target.points)]
+        return "\n".join(lines) + "\n"
 
     def _study(self, actuator: Mapping[str, Any], pressure: float) -> dict[str, Any]:
         mesh = self.file.mesh.model_dump(exclude_none=True)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from pneumorph.errors import InputError
 from pneumorph.geometry import BendingSkin
 from pneumorph.measures import centre_line
 from pneumorph.measures.faces import sample
@@ -53,11 +54,18 @@ def verify(
     A run that stops before its pressure is no error: the last state counts, and `solution.status` says so.
     """
     study = task.verification(design)
-    solution = run_study(study, folder, resume=resume, progress=progress, raise_on_stop=False)
-    tube = study.actuator
+    return verified_by(task, design, run_study(study, folder, resume=resume, progress=progress, raise_on_stop=False))
+
+
+def verified_by(task: DesignTask, design: SkinDesign, solution: Solution) -> Verified:
+    """Return what a solution of the full model of a design says; raises InputError for one without a state beyond rest.
+    """  # fmt: skip
+    tube = task.verification(design).actuator
     assert isinstance(tube, BendingSkin)
     states = [state for state in solution.states if state.displacement.any()]
     lines = [state_line(state, tube) for state in states]
+    if not states:
+        raise InputError("the full model has no state under pressure: it says nothing of the design")
     deviations = [Deviation.of(line, task.target, fractions_of(line)) for line in lines]
     nearest = int(np.argmin([deviation.rms for deviation in deviations]))
     return Verified(solution, lines[-1], deviations[-1], states[nearest].index, deviations[nearest])

@@ -1,6 +1,19 @@
 """Reproductions of published systems: one file each, imported here so that they are known by name."""
 
-from pneumorph.studies.reproductions import auxetic_skin, finger, hexagonal_prism, pneunet_2d, soft_wheel
+from pneumorph.studies.reproductions import (
+    auxetic_skin,
+    finger,
+    finger_gripper,
+    finger_massage,
+    hexagonal_anchoring,
+    hexagonal_earthworm,
+    hexagonal_expansion,
+    hexagonal_moment,
+    hexagonal_prism,
+    pneunet_2d,
+    pneunet_quadruped,
+    soft_wheel,
+)
 from pneumorph.studies.reproductions.reproduction import (
     Reproduction,
     SystemBySweep,
@@ -10,6 +23,7 @@ from pneumorph.studies.reproductions.reproduction import (
 )
 
 __all__ = [
-    "Reproduction", "SystemBySweep", "SystemInParts", "auxetic_skin", "finger", "hexagonal_prism", "names",
-    "pneunet_2d", "reproduction", "soft_wheel",
+    "Reproduction", "SystemBySweep", "SystemInParts", "auxetic_skin", "finger", "finger_gripper", "finger_massage",
+    "hexagonal_anchoring", "hexagonal_expansion", "hexagonal_earthworm", "hexagonal_moment", "hexagonal_prism", "names",
+    "pneunet_2d", "pneunet_quadruped", "reproduction", "soft_wheel",
 ]  # fmt: skip

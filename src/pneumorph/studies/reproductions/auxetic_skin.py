@@ -309,6 +309,7 @@ SYSTEM = register_sweep(
         name=NAME,
         title="Tube with an auxetic-metamaterial skin (system 4)",
         source="Pu, Zheng, Hu, Tang, An, Materials & Design 246 (2024) 113334, doi 10.1016/j.matdes.2024.113334",
+        parts={"shapes": "the seven programmed shapes at their pressures (finite elements)"},
     )
 )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pneumorph.errors import NameNotFoundError, unknown_name
 from pneumorph.solution import Solution
@@ -20,6 +20,8 @@ class Reproduction:
     curves:  (study) -> reported curves for the figures.
     profiles: (solution, study) -> further figures, such as stress along a line.
     notes:   sentences on what was assumed and what was left out.
+    parts:   label -> name of a reproduction, for a system of several runs; its own name is among them. All are run, the
+        others into folders of their label inside its folder, and their rows join its comparison.
     """
 
     name: str
@@ -30,6 +32,7 @@ class Reproduction:
     curves: Callable[[Study], tuple[ReportedCurve, ...]]
     notes: tuple[str, ...] = ()
     profiles: Callable[[Solution, Study], tuple[Profile, ...]] = lambda solution, study: ()
+    parts: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -44,11 +47,15 @@ class SystemInParts:
 
 @dataclass(frozen=True)
 class SystemBySweep:
-    """A published system whose trends are told from a sweep of many designs."""
+    """A published system whose trends are told from a sweep of many designs.
+
+    parts: what is run beside the sweep, each by itself: name -> what it is.
+    """
 
     name: str
     title: str
     source: str
+    parts: Mapping[str, str] = field(default_factory=dict)
 
 
 _KNOWN: dict[str, Reproduction] = {}

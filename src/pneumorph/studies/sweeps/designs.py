@@ -39,8 +39,8 @@ class Design:
         if self.study is None:
             return ""
         total = hashlib.sha256(self.study.resolved_text().encode())
-        if isinstance(self.study.actuator, Imported):
-            for path in self.study.actuator.paths:
+        for body in self.study.assembly.bodies.values():
+            for path in body.paths if isinstance(body, Imported) else ():
                 try:
                     total.update(Path(path).read_bytes())
                 except OSError as error:

@@ -108,6 +108,7 @@ class _Unmeshed:
         self.surfaces = self.supplies
         self.kinds = study.kinds
         self.contacts = getattr(study, "contacts", ())
+        self.frames = getattr(study, "free_bodies", ())  # as in a model, they are named
         self.mesh = SimpleNamespace(dimension=3)
 
 

@@ -95,6 +95,19 @@ def run_sweep(
     return result
 
 
+def stored_table(sweep: Sweep, folder: Path | str) -> SweepTable:
+    """Return the table of what a folder holds of a sweep; nothing is computed or written.
+
+    Raises StorageError for a folder that holds no sweep, or a damaged design.
+    """
+    place = SweepFolder(folder)
+    if not place.holds_sweep:
+        raise StorageError(f"'{place.path}' holds no sweep")
+    known = {design.identity: design for design in sweep.designs if design.study is not None}
+    records = {identity: r for identity, design in known.items() if (r := place.record(design)) is not None}
+    return table_of(sweep.designs, records, sweep.parameters, sweep.results)
+
+
 def _computed(
     workers: Workers, designs: list[Design], place: SweepFolder, keep: bool
 ) -> Iterable[tuple[Design, dict[str, object]]]:

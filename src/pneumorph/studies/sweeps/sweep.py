@@ -77,11 +77,17 @@ class Sweep:
         return to_toml(data) + "\n[parameters]\n" + "\n".join(lines) + "\n"
 
     def study_text(self) -> str:
-        """Return the study file as it stands, not resolved, as the parameters lead into it; files by whole paths."""
-        actuator = self.study.file.actuator
-        if isinstance(actuator, ImportedSection):
-            return to_toml(replaced(self.table, "actuator.file", actuator.file))
-        return to_toml(self.table)
+        """Return the study file as it stands, not resolved, as the parameters lead into it; files by whole paths.
+
+        Its title is in it, so that under any name it makes equal designs.
+        """
+        table, file = {**self.table, "title": self.study.title}, self.study.file
+        sections = {"actuator.file": file.actuator}
+        sections |= {f"part.{name}.actuator.file": part.actuator for name, part in file.part.items()}
+        for path, section in sections.items():
+            if isinstance(section, ImportedSection):
+                table = replaced(table, path, section.file)
+        return to_toml(table)
 
 
 def load_sweep(path: Path | str) -> Sweep:
