@@ -5,9 +5,9 @@ BIN := $(VENV)/bin
 
 .PHONY: demo test check slow clean
 
-demo: $(VENV)/ready  ## bend the hexagonal-prism actuator to 80 kPa on a coarse mesh, report in runs/demo
+demo: $(VENV)/ready  ## bend the hexagonal-prism actuator to 80 kPa, report in runs/demo
 	rm -rf runs/demo
-	$(BIN)/pneumorph reproduce hexagonal-prism --quick --out runs/demo
+	$(BIN)/pneumorph reproduce hexagonal-prism --part bending --quick --out runs/demo
 
 test: $(VENV)/ready  ## the default tests
 	$(BIN)/python -m pytest -m "not slow"

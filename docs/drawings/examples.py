@@ -20,7 +20,8 @@ WIDTH, COLOURS, LARGEST = 640, 256, 100_000
 
 def draw(solution: Solution, path: Path) -> None:
     """Draw the state of the largest displacement, coloured by stretch, whole and cut; small for a page of many."""
-    state = max(solution.states, key=lambda state: float(np.abs(state.displacement).max()))
+    soft = solution.model.mesh.solid
+    state = max(solution.states, key=lambda state: float(np.abs(state.displacement[:soft]).max()))
     field = next(field for field in FIELDS if field.key == "stretch")
     picture = Image.fromarray(field_picture(Drawing([solution.states[0], state]), field, state))
     picture.thumbnail((WIDTH, WIDTH), Image.Resampling.LANCZOS)

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
-from pneumorph.geometry import Actuator, Finger, HexagonalPrism, PneuNet, SoftLimb, ThickSphere, ThickTube
+from pneumorph.geometry import Actuator, Finger, Forearm, HexagonalPrism, PneuNet, SoftLimb, ThickSphere, ThickTube
 from pneumorph.geometry.occ import regular_polygon
 
 DOCS = Path(__file__).parents[1]
@@ -283,5 +283,5 @@ if __name__ == "__main__":
     chamber_row(PneuNet(), "pneunet", beam_symbols, "inner")
     round_bodies(ThickTube(), ThickSphere())
     soft_limb(SoftLimb())
-    tables = [HexagonalPrism(), Finger(), PneuNet(), SoftLimb(), ThickTube(), ThickSphere()]
+    tables = [HexagonalPrism(), Finger(), Forearm(), PneuNet(), SoftLimb(), ThickTube(), ThickSphere()]
     write_tables(DOCS / "geometry.md", tables)
