@@ -9,8 +9,8 @@ demo: $(VENV)/ready  ## bend the hexagonal-prism actuator to 80 kPa, report in r
 	rm -rf runs/demo
 	$(BIN)/pneumorph reproduce hexagonal-prism --part bending --quick --out runs/demo
 
-test: $(VENV)/ready  ## the default tests
-	$(BIN)/python -m pytest -m "not slow"
+test: $(VENV)/ready  ## the default tests, a process a core
+	PNEUMORPH_THREADS=1 $(BIN)/python -m pytest -m "not slow" -n auto --maxprocesses 8 --dist loadfile
 
 check: $(VENV)/ready  ## lint, format and types
 	$(BIN)/ruff check .

@@ -62,7 +62,7 @@ def test_a_run_that_would_only_go_on_through_a_surface_stops_with_its_states_and
 
 
 def test_an_increment_that_jumped_over_a_surface_is_cut_as_any_that_fails(jumping, caplog):
-    caplog.set_level("INFO")
+    caplog.set_level("INFO", logger="pneumorph")
     states, failure = follow(*pressed("a punch", smallest=0.01))
     assert failure is None
     assert states[-1].time == 2.0

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from pneumorph.errors import MeshError
+from pneumorph.errors import GeometryError, MeshError
 from pneumorph.geometry import Finger, HexagonalPrism, PneuNet
 from pneumorph.mesh import generate, inspect
 from pneumorph.mesh.topology import CORNERS, open_edges
@@ -126,3 +126,34 @@ def test_templates_without_a_choice_of_cells_refuse_hexahedra():
 def test_a_block_grid_has_a_size_only(name):
     with pytest.raises(MeshError, match=f"{name} = 0.5: a layered mesh has its size only"):
         generate(Finger(), hexahedra=True, **{name: 0.5})
+
+
+@pytest.mark.parametrize("hexahedra", [True, False])
+def test_thick_end_walls_lengthen_the_rows_and_are_clamped_where_they_reach_the_end(hexahedra):
+    thin = HexagonalPrism(chambers=2, length=22.0, gap=2.0, half=True)
+    thick = HexagonalPrism(chambers=2, length=22.0, gap=2.0, half=True, end_wall=4.0)
+    assert thin.blocks == ((2.0, 10.0), (12.0, 20.0))
+    assert thick.blocks == ((0.0, 10.0), (12.0, 22.0))
+    assert thick.chamber_starts == thin.chamber_starts
+    one, other = (generate(p, 8.0, hexahedra=hexahedra) for p in (thin, thick))
+    more = 3.0 * 2.0 * 2.0 * thick.block_width * thick.block_height  # three rows, two ends, 2 mm
+    assert inspect(other).volume - inspect(one).volume == pytest.approx(more, rel=1e-4)
+    low, high = (face_area(other, name) - face_area(one, name) for name in ("clamp", "tip"))
+    assert low == pytest.approx(3.0 * thick.block_width * thick.block_height, rel=1e-3)
+    assert high == pytest.approx(0.0, abs=1.0)  # the round core is meshed anew
+
+
+def face_area(mesh, name):
+    """Area of a plane face, mm2, from the corners of its pieces."""
+    total = 0.0
+    for block in mesh.face_blocks(name):
+        corners = mesh.points[block.nodes[:, : CORNERS[block.kind]]]
+        first = corners[:, :1]
+        spans = corners[:, 1:] - first
+        total += 0.5 * float(np.linalg.norm(np.cross(spans[:, :-1], spans[:, 1:]), axis=2).sum())
+    return total
+
+
+def test_end_walls_thinner_than_the_others_are_refused():
+    with pytest.raises(GeometryError, match=r"end_wall = 1 mm: expected at least expansion_wall = 2 mm"):
+        HexagonalPrism(end_wall=1.0)

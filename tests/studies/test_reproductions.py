@@ -28,7 +28,8 @@ def run_to(*pressures):
 
 def test_the_hexagonal_prism_is_half_of_the_published_one_with_two_neighbouring_cavities_at_one_pressure():
     study = hexagonal_prism.study(quick=False)
-    assert study.actuator == HexagonalPrism(half=True)
+    assert study.actuator == HexagonalPrism(half=True, end_wall=4.0)
+    assert (study.actuator.blocks[0][0], study.actuator.blocks[-1][1]) == (0.0, 112.0)
     # its image in the cut is cavity_3
     assert [cavity.name for cavity in study.cavities] == ["cavity_2"]
     assert study.materials["body"].c10 == 0.11

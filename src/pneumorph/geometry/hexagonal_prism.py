@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from pneumorph.geometry import occ
 from pneumorph.geometry.actuator import Actuator, millimetres, whole_number
@@ -19,7 +20,8 @@ class HexagonalPrism(Actuator):
     The column stands on the clamped end (z = 0, face "clamp") and ends in "tip"; both are hexagonal rings, because the
     hollow core goes through the whole length and is open at both ends (its wall is the face "core", never pressurised).
     On each flat side stands one assembly of `chambers` air chambers in a row, centred along the length: `cavity_1`
-    looks along x, the others follow anticlockwise seen from the tip. Chambers are separate blocks with gaps between
+    looks along x, the others follow anticlockwise seen from the tip. A row that begins at the clamped end, because its
+    end walls take up the rest of the length, is clamped with it. Chambers are separate blocks with gaps between
     them; the airway runs through the gaps on the column's side inside a small bridge. Blocks as wide as the column's
     side touch the next assembly along the hexagon's edge only, which leaves a 60 degree groove and a clean solid.
 
@@ -35,6 +37,7 @@ class HexagonalPrism(Actuator):
     chamber_length: float = millimetres(4.0, "l2", "length of the air chamber, axial", given=True)
     expansion_wall: float = millimetres(2.0, "l1", "wall between a chamber and the gap", given=True)
     gap: float = millimetres(2.0, "l3", "gap between neighbouring chambers' walls")
+    end_wall: float = millimetres(2.0, "l5", "outer wall of the first and the last chamber of a row")
     top_wall: float = millimetres(3.0, "h1", "wall on top of a chamber")
     side_wall: float = millimetres(3.0, "w1", "wall beside a chamber")
     airway_width: float = millimetres(3.0, "w3", "width of the airway")
@@ -91,14 +94,26 @@ class HexagonalPrism(Actuator):
 
     @property
     def assembly_length(self) -> float:
-        """Length of the row of chambers, N La + (N - 1) l3, mm."""
-        return self.chambers * self.block_length + (self.chambers - 1) * self.gap
+        """Length of the row of chambers, N La + (N - 1) l3 + 2 (l5 - l1), mm."""
+        ends = 2.0 * (self.end_wall - self.expansion_wall)
+        return self.chambers * self.block_length + (self.chambers - 1) * self.gap + ends
 
     @property
     def chamber_starts(self) -> tuple[float, ...]:
-        """z at which each chamber's block begins, mm."""
-        first, step = (self.length - self.assembly_length) / 2.0, self.block_length + self.gap
-        return tuple(first + i * step for i in range(self.chambers))
+        """z at which each chamber's air begins, mm."""
+        first = (self.length - self.assembly_length) / 2.0 + self.end_wall
+        return tuple(first + i * (self.block_length + self.gap) for i in range(self.chambers))
+
+    @property
+    def blocks(self) -> tuple[tuple[float, float], ...]:
+        """z at which the block of each chamber begins and ends, mm."""
+        inner = [
+            (low - self.expansion_wall, low + self.chamber_length + self.expansion_wall) for low in self.chamber_starts
+        ]
+        outer = self.end_wall - self.expansion_wall
+        low, high = inner[0][0] - outer, inner[-1][1] + outer
+        starts, ends = [low, *(a for a, _ in inner[1:])], [*(b for _, b in inner[:-1]), high]
+        return tuple(zip(starts, ends, strict=True))
 
     @property
     def sides(self) -> tuple[tuple[int, str], ...]:
@@ -121,9 +136,15 @@ class HexagonalPrism(Actuator):
             "(side * sqrt(3) / 2)",
         )
         self._require(
+            self.end_wall >= self.expansion_wall,
+            f"end_wall = {self.end_wall:g} mm: expected at least expansion_wall = {self.expansion_wall:g} mm, the "
+            "thinnest walls",
+        )
+        self._require(
             self.assembly_length <= self.length + 1e-9,
             f"the chambers overlap or do not fit: {self.chambers} * (chamber_length + 2 * expansion_wall) + "
-            f"{self.chambers - 1} * gap = {self.assembly_length:g} mm, expected at most length = {self.length:g} mm",
+            f"{self.chambers - 1} * gap + 2 * (end_wall - expansion_wall) = {self.assembly_length:g} mm, expected at "
+            f"most length = {self.length:g} mm",
         )
         self._require(
             self.block_width <= self.side + 1e-9,
@@ -175,13 +196,14 @@ class HexagonalPrism(Actuator):
         def add(parts: list[occ.Shape], height: float, width: float, low: float, high: float, face: str | None) -> None:
             parts.append(occ.box((floor, -width / 2.0, low), (floor + height, width / 2.0, high), face))
 
-        for i, low in enumerate(self.chamber_starts):
-            high = low + self.block_length
+        for low, (bottom, top) in zip(self.chamber_starts, self.blocks, strict=True):
+            add(silicone, self.block_height, self.block_width, bottom, top, None)
+            if bottom < 1e-9:
+                occ.name_low_faces(silicone[-1], {"z": "clamp"})
+            add(air, self.chamber_height, self.chamber_width, low, low + self.chamber_length, name)
+        for (_, low), (high, _) in pairwise(self.blocks):
             wall = self.expansion_wall
-            add(silicone, self.block_height, self.block_width, low, high, None)
-            add(air, self.chamber_height, self.chamber_width, low + wall, high - wall, name)
-            if i < self.chambers - 1:
-                bridge = (self.airway_height + self.airway_roof, self.airway_width + 2.0 * self.airway_side)
-                add(silicone, *bridge, high, high + self.gap, None)
-                add(air, self.airway_height, self.airway_width, high - wall, high + self.gap + wall, name)
+            bridge = (self.airway_height + self.airway_roof, self.airway_width + 2.0 * self.airway_side)
+            add(silicone, *bridge, low, high, None)
+            add(air, self.airway_height, self.airway_width, low - wall, high + wall, name)
         return silicone, air

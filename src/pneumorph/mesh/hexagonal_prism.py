@@ -57,17 +57,16 @@ def _sector(prism: HexagonalPrism, size: float) -> Mesh:
     across = lines([-0.5 * prism.side, *floor, 0.5 * prism.side])
     grid = BlockGrid(tensor(across, [-1.0, 0.0]) + row, _planes(prism))
     grid = grid.fill("body", v=(-1.0, 0.0))
-    for low in prism.chamber_starts:
-        high, wall = low + prism.block_length, prism.expansion_wall
-        grid = grid.fill("body", u=_about(block), v=(0.0, block[1]), w=(low, high))
-        grid = grid.hollow(_AIR, u=_about(chamber), v=(0.0, chamber[1]), w=(low + wall, high - wall))
-    for first, second in pairwise(prism.chamber_starts):
-        low, high, wall = first + prism.block_length, second, prism.expansion_wall
+    for low, ends in zip(prism.chamber_starts, prism.blocks, strict=True):
+        grid = grid.fill("body", u=_about(block), v=(0.0, block[1]), w=ends)
+        grid = grid.hollow(_AIR, u=_about(chamber), v=(0.0, chamber[1]), w=(low, low + prism.chamber_length))
+    for (_, low), (high, _) in pairwise(prism.blocks):
+        wall = prism.expansion_wall
         airway = (prism.airway_width, prism.airway_height)
         grid = grid.fill("body", u=_about(bridge), v=(0.0, bridge[1]), w=(low, high))
         grid = grid.hollow(_AIR, u=_about(airway), v=(0.0, airway[1]), w=(low - wall, high + wall))
-    ends = [("clamp", {"w": (0.0, 0.0)}), ("tip", {"w": (prism.length, prism.length)})]
-    ends = [(name, box | {"v": (-1.0, 0.0)}) for name, box in ends]
+    # rows that begin at the clamped end are clamped with it; the free end's face is the column's alone
+    ends = [("clamp", {"w": (0.0, 0.0)}), ("tip", {"w": (prism.length, prism.length), "v": (-1.0, 0.0)})]
     return grid.mesh(
         lambda points: around_core(points, prism),
         patches=[
@@ -82,9 +81,8 @@ def _sector(prism: HexagonalPrism, size: float) -> Mesh:
 def _planes(prism: HexagonalPrism) -> Array:
     """Return z of the planes between the layers."""
     stops = [0.0]
-    for low in prism.chamber_starts:
-        high, wall = low + prism.block_length, prism.expansion_wall
-        stops += [low, low + wall, high - wall, high]
+    for low, (bottom, top) in zip(prism.chamber_starts, prism.blocks, strict=True):
+        stops += [bottom, low, low + prism.chamber_length, top]
     return lines([*stops, prism.length])
 
 

@@ -7,6 +7,7 @@ they meet node to node. A cut through a side leaves half of its grid.
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from types import MappingProxyType
 
 import numpy as np
@@ -74,9 +75,8 @@ def _prism(robot: PipeRobot, across: Array, size: float) -> Mesh:
     if robot.airways:
         heights += [robot.airway_height, robot.airway_height + robot.airway_roof]
     planes = [0.0, length]
-    for low in robot.chamber_starts:
-        high = low + robot.block_length
-        planes += [low, low + robot.expansion_wall, high - robot.expansion_wall, high]
+    for low, (bottom, top) in zip(robot.chamber_starts, robot.blocks, strict=True):
+        planes += [bottom, low, low + robot.chamber_length, top]
     cut = robot.eighth and robot.modules == 1
     up = [-1.0, *lines(_sorted(heights), size)]
     grid = BlockGrid(tensor(across, up), _sorted([*planes, *([length / 2.0] if cut else [])]))
@@ -87,14 +87,12 @@ def _prism(robot: PipeRobot, across: Array, size: float) -> Mesh:
 
     grid = grid.fill("body", v=(-1.0, 0.0))
     wall = robot.expansion_wall
-    for low in robot.chamber_starts:
-        high = low + robot.block_length
-        grid = grid.fill("body", **box(robot.block_width, low, high, robot.block_height))
-        grid = grid.hollow(_AIR, **box(robot.chamber_width, low + wall, high - wall, robot.chamber_height))
+    for low, (bottom, top) in zip(robot.chamber_starts, robot.blocks, strict=True):
+        grid = grid.fill("body", **box(robot.block_width, bottom, top, robot.block_height))
+        grid = grid.hollow(_AIR, **box(robot.chamber_width, low, low + robot.chamber_length, robot.chamber_height))
     if robot.airways:
         bridge = robot.airway_width + 2.0 * robot.airway_side, robot.airway_height + robot.airway_roof
-        for start in robot.chamber_starts[:-1]:
-            low, high = start + robot.block_length, start + robot.block_length + robot.gap
+        for (_, low), (high, _) in pairwise(robot.blocks):
             grid = grid.fill("body", **box(bridge[0], low, high, bridge[1]))
             grid = grid.hollow(_AIR, **box(robot.airway_width, low - wall, high + wall, robot.airway_height))
     if cut:
