@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 from pneumorph.geometry import occ
 from pneumorph.geometry.actuator import Actuator, millimetres, whole_number
@@ -196,14 +195,16 @@ class HexagonalPrism(Actuator):
         def add(parts: list[occ.Shape], height: float, width: float, low: float, high: float, face: str | None) -> None:
             parts.append(occ.box((floor, -width / 2.0, low), (floor + height, width / 2.0, high), face))
 
-        for low, (bottom, top) in zip(self.chamber_starts, self.blocks, strict=True):
+        wall, bridge = (
+            self.expansion_wall,
+            (self.airway_height + self.airway_roof, self.airway_width + 2 * self.airway_side),
+        )
+        for i, (low, (bottom, top)) in enumerate(zip(self.chamber_starts, self.blocks, strict=True)):
             add(silicone, self.block_height, self.block_width, bottom, top, None)
             if bottom < 1e-9:
                 occ.name_low_faces(silicone[-1], {"z": "clamp"})
             add(air, self.chamber_height, self.chamber_width, low, low + self.chamber_length, name)
-        for (_, low), (high, _) in pairwise(self.blocks):
-            wall = self.expansion_wall
-            bridge = (self.airway_height + self.airway_roof, self.airway_width + 2.0 * self.airway_side)
-            add(silicone, *bridge, low, high, None)
-            add(air, self.airway_height, self.airway_width, low - wall, high + wall, name)
+            if i < self.chambers - 1:
+                add(silicone, *bridge, top, top + self.gap, None)
+                add(air, self.airway_height, self.airway_width, top - wall, top + self.gap + wall, name)
         return silicone, air

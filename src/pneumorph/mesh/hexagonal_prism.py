@@ -66,11 +66,11 @@ def _sector(prism: HexagonalPrism, size: float) -> Mesh:
         grid = grid.fill("body", u=_about(bridge), v=(0.0, bridge[1]), w=(low, high))
         grid = grid.hollow(_AIR, u=_about(airway), v=(0.0, airway[1]), w=(low - wall, high + wall))
     # rows that begin at the clamped end are clamped with it; the free end's face is the column's alone
-    ends = [("clamp", {"w": (0.0, 0.0)}), ("tip", {"w": (prism.length, prism.length), "v": (-1.0, 0.0)})]
+    patches = [("clamp", {"w": (0.0, 0.0)}), ("tip", {"w": (prism.length, prism.length), "v": (-1.0, 0.0)})]
     return grid.mesh(
         lambda points: around_core(points, prism),
         patches=[
-            *ends,
+            *patches,
             ("core", {"v": (-1.0, -1.0)}),
             *((_SIDE, {"u": (u, u), "v": (-1.0, 0.0)}) for u in (-0.5 * prism.side, 0.5 * prism.side)),
         ],
