@@ -1,6 +1,5 @@
 """A small gripper, half of one short finger, closes on a cup, and lifts it where friction holds."""
 
-import numpy as np
 import pytest
 
 from pneumorph.solution import solve
@@ -53,7 +52,7 @@ def lifted(friction, bottom, top):
 
 
 def at_the_end_of(history, phase, column):
-    return float(history.values(column)[np.asarray(history.values("phase")) == phase][-1])
+    return float(history.values(column)[history.during(phase)][-1])
 
 
 def test_a_cup_that_is_held_by_friction_rises_with_the_holder():

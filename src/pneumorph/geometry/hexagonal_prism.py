@@ -106,13 +106,9 @@ class HexagonalPrism(Actuator):
     @property
     def blocks(self) -> tuple[tuple[float, float], ...]:
         """z at which the block of each chamber begins and ends, mm."""
-        inner = [
-            (low - self.expansion_wall, low + self.chamber_length + self.expansion_wall) for low in self.chamber_starts
-        ]
-        outer = self.end_wall - self.expansion_wall
-        low, high = inner[0][0] - outer, inner[-1][1] + outer
-        starts, ends = [low, *(a for a, _ in inner[1:])], [*(b for _, b in inner[:-1]), high]
-        return tuple(zip(starts, ends, strict=True))
+        inner = [self.expansion_wall] * (self.chambers - 1)
+        walls = zip(self.chamber_starts, [self.end_wall, *inner], [*inner, self.end_wall], strict=True)
+        return tuple((low - below, low + self.chamber_length + above) for low, below, above in walls)
 
     @property
     def sides(self) -> tuple[tuple[int, str], ...]:

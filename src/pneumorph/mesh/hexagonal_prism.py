@@ -7,7 +7,6 @@ rectangles within rectangles (airway, bridge, chamber, block), in layers from wa
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 
 from pneumorph.errors import MeshError
 from pneumorph.geometry.hexagonal_prism import HexagonalPrism
+from pneumorph.mesh.assembly import Turn
 from pneumorph.mesh.grid import BlockGrid
 from pneumorph.mesh.joining import join, placed
 from pneumorph.mesh.mesh import Mesh
@@ -37,7 +37,7 @@ def mesh_prism(prism: HexagonalPrism, size: float = math.inf) -> Mesh:
     sector = _sector(prism, size)
     # of a half, the sides that nothing joins are its cut
     return join(
-        [placed(sector, turned(60.0 * number), rename={_AIR: name, _SIDE: _CUT}) for number, name in prism.sides]
+        [placed(sector, about_z(60.0 * number), rename={_AIR: name, _SIDE: _CUT}) for number, name in prism.sides]
     )
 
 
@@ -101,8 +101,6 @@ def around_core(points: Array, prism: HexagonalPrism) -> Array:
     return np.column_stack([x * column + np.maximum(v, 0.0), y * column, w])
 
 
-def turned(degrees: float) -> Callable[[Array], Array]:
-    """Return the mapping of points (n, 3) that turns them about z."""
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    matrix = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return lambda points: np.asarray(points @ matrix)
+def about_z(degrees: float) -> Turn:
+    """Return the turn about the axis of the column."""
+    return Turn((0.0, 0.0, 1.0), math.radians(degrees))

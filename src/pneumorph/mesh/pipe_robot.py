@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pneumorph.geometry.pipe_robot import PipeRobot
 from pneumorph.mesh.grid import BlockGrid
-from pneumorph.mesh.hexagonal_prism import around_core, turned
+from pneumorph.mesh.hexagonal_prism import about_z, around_core
 from pneumorph.mesh.joining import join, placed
 from pneumorph.mesh.mesh import CellBlock, FaceBlock, Mesh
 from pneumorph.mesh.quads import lines, tensor
@@ -38,7 +38,7 @@ def mesh_pipe_robot(robot: PipeRobot, size: float) -> Mesh:
         # y >= 0 is u <= 0 on the side that looks along x, the only one that a cut goes through
         halved = side == 0 and (robot.quarter or robot.eighth)
         across = _across(robot, size)[: None if not halved else 1 + len(_across(robot, size)) // 2]
-        turn = turned(60.0 * side)
+        turn = about_z(60.0 * side)
         prism = _prism(robot, across, size)
         if robot.modules == 1:
             parts.append(_named(robot, prism, "", side, turn))

@@ -80,6 +80,10 @@ class History:
         kind = self.column(key).kind
         return np.array([row[key] for row in self.rows], dtype=str if kind == TEXT else np.float64)
 
+    def during(self, phase: str) -> NDArray[np.bool_]:
+        """Return which rows (rows,) are states of a phase."""
+        return np.asarray(self.values("phase") == phase)
+
     def smallest(self, prefix: str) -> float | None:
         """Return the smallest number in all columns whose keys begin with a prefix; None where there is none."""
         keys = [key for key in self.keys if key.startswith(prefix)]

@@ -19,6 +19,10 @@ from pneumorph.units import show, to_printed
 
 Array = NDArray[np.float64]
 
+SOURCE = (
+    "Numerical and experimental methods for the assessment of a human finger-inspired soft pneumatic actuator for "
+    "gripping applications (MethodsX)"
+)
 BEND, PRESS = "bend", "press"
 PRESSURES = (0.05, 0.06, 0.07, 0.08, 0.09, 0.1)  # MPa
 QUICK_PRESSURES = (0.05, 0.075, 0.1)
@@ -150,19 +154,17 @@ _MEANS = (
 )
 
 
-def _rows(solution: Solution, phase: str) -> NDArray[np.bool_]:
-    return np.asarray(solution.history.values("phase")) == phase
-
-
 def _curve(solution: Solution, phase: str, column: str, kind: str) -> Array:
     """Return a column over the states of a phase, in printed units."""
-    return np.array([to_printed(value, kind) for value in solution.history.values(column)[_rows(solution, phase)]])
+    return np.array(
+        [to_printed(value, kind) for value in solution.history.values(column)[solution.history.during(phase)]]
+    )
 
 
 def _at(solution: Solution, phase: str, column: str, pressure: float) -> float | None:
     """Return a column in the state of a phase that has a pressure, None where there is none."""
     here = np.isclose(solution.history.values("pressure:cavity"), pressure, rtol=1e-9, atol=0.0)
-    values = solution.history.values(column)[here & _rows(solution, phase)]
+    values = solution.history.values(column)[here & solution.history.during(phase)]
     return float(values[-1]) if len(values) else None
 
 
@@ -178,7 +180,7 @@ def _note(value: float | None, text: str) -> str:
 
 def _correlation(solution: Solution, column: str) -> float | None:
     """Return the correlation coefficient of a column with the pressure from 50 kPa on in free bending."""
-    late = _rows(solution, BEND) & (solution.history.values("pressure:cavity") >= 0.05 - 1e-9)
+    late = solution.history.during(BEND) & (solution.history.values("pressure:cavity") >= 0.05 - 1e-9)
     if late.sum() < 3:
         return None
     pressure, values = (solution.history.values(key)[late] for key in ("pressure:cavity", column))
@@ -187,7 +189,7 @@ def _correlation(solution: Solution, column: str) -> float | None:
 
 def _bent(solution: Solution) -> State | None:
     """Return the state of free bending with the highest pressure, None where there is none."""
-    rows = np.flatnonzero(_rows(solution, BEND))
+    rows = np.flatnonzero(solution.history.during(BEND))
     return solution.states[int(rows[-1])] if len(rows) else None
 
 
@@ -229,13 +231,9 @@ register(
     Reproduction(
         name="finger",
         title="Finger-like actuator, bending and blocked force (system 3)",
-        source=(
-            "Numerical and experimental methods for the assessment of a human finger-inspired soft pneumatic actuator "
-            "for gripping applications (MethodsX)"
-        ),
+        source=SOURCE,
         study=study,
         compare=compare,
-        curves=lambda study: (),
         profiles=profiles,
         notes=(
             "Given by the study: seven chambers with six passages, Yeoh's constants, gravity, frictionless contact of "

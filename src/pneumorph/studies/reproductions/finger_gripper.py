@@ -11,6 +11,7 @@ from pneumorph.errors import InputError
 from pneumorph.geometry import Gripper
 from pneumorph.solution import Solution
 from pneumorph.studies.comparison import Comparison, Profile, Series
+from pneumorph.studies.reproductions.finger import SOURCE
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
 from pneumorph.units import show
@@ -100,7 +101,7 @@ def compare(solution: Solution, study: Study) -> tuple[Comparison, ...]:
     rise, behind, stand = (_held(solution, column) for column in ("rise", "behind", "stand"))
     lifted = None if rise is None or stand is None else float(rise > 0.5 * RISE and stand == 0.0)
     radial = None
-    closed = np.flatnonzero(_rows(solution, CLOSE))
+    closed = np.flatnonzero(solution.history.during(CLOSE))
     if len(closed):
         radial = _radial(solution, study)[closed[-1]]
     largest = _largest(solution, share)
@@ -125,7 +126,7 @@ def profiles(solution: Solution, study: Study) -> tuple[Profile, ...]:
     holder, cup = solution.history.values("value:holder"), _rise(solution)
     ways = (Series("holder", clock, holder), Series("cup", clock, cup))
     result = [Profile("lift", "Holder and cup", "time [s]", "way up [mm]", ways)]
-    share, last = _share(study.actuator), _rows(solution, LOAD)
+    share, last = _share(study.actuator), solution.history.during(LOAD)
     if last.any():
         asked = MASS * _GRAVITY + share * solution.history.values("value:load")[last]
         carried = -share * solution.history.values("contact_force_z:grip")[last]
@@ -148,20 +149,16 @@ def _share(actuator: object) -> float:
     return 2.0 * actuator.fingers if actuator.half else 1.0
 
 
-def _rows(solution: Solution, phase: str) -> NDArray[np.bool_]:
-    return np.asarray(solution.history.values("phase")) == phase
-
-
 def _rise(solution: Solution) -> Array:
     """Return how far the cup is above where it stood after settling, mm, in all states."""
-    height, settled = solution.history.values("body_z:cup"), np.flatnonzero(_rows(solution, SETTLE))
+    height, settled = solution.history.values("body_z:cup"), np.flatnonzero(solution.history.during(SETTLE))
     result: Array = height - height[settled[-1] if len(settled) else 0]
     return result
 
 
 def _behind(solution: Solution) -> Array:
     """Return how far the cup is behind the holder since the fingers closed, mm, in all states."""
-    rise, closed = _rise(solution), np.flatnonzero(_rows(solution, CLOSE))
+    rise, closed = _rise(solution), np.flatnonzero(solution.history.during(CLOSE))
     start = rise[closed[-1]] if len(closed) else 0.0
     result: Array = solution.history.values("value:holder") - (rise - start)
     return result
@@ -169,7 +166,7 @@ def _behind(solution: Solution) -> Array:
 
 def _held(solution: Solution, what: str) -> float | None:
     """Return rise, way behind the holder or force of the table at the end of holding, None where it was not reached."""
-    rows = np.flatnonzero(_rows(solution, HOLD))
+    rows = np.flatnonzero(solution.history.during(HOLD))
     if not len(rows):
         return None
     if what == "stand":
@@ -187,7 +184,7 @@ def _radial(solution: Solution, study: Study) -> Array:
 
 def _largest(solution: Solution, share: float) -> float | None:
     """Return the largest force, N, that the fingers carried under the load before the cup was lost."""
-    rows = _rows(solution, LOAD) & (_behind(solution) <= SLIPPED)
+    rows = solution.history.during(LOAD) & (_behind(solution) <= SLIPPED)
     if not rows.any():
         return None
     carried = -share * solution.history.values("contact_force_z:grip")[rows]
@@ -200,13 +197,9 @@ register(
     Reproduction(
         name="finger-gripper",
         title="Three-finger gripper that lifts a cup (system 3)",
-        source=(
-            "Numerical and experimental methods for the assessment of a human finger-inspired soft pneumatic actuator "
-            "for gripping applications (MethodsX)"
-        ),
+        source=SOURCE,
         study=study,
         compare=compare,
-        curves=lambda study: (),
         profiles=profiles,
         notes=(
             "Given by the study: three fingers in a holder lift a small cup. It shows that; it gives no size, weight, "

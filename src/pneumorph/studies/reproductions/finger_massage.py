@@ -12,6 +12,7 @@ from pneumorph.measures import contact_pressure
 from pneumorph.mesh.assembly import Turn, name_of
 from pneumorph.solution import Solution
 from pneumorph.studies.comparison import Comparison, Profile, Series
+from pneumorph.studies.reproductions.finger import SOURCE
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
 from pneumorph.units import show, to_printed
@@ -129,7 +130,7 @@ def compare(solution: Solution, study: Study) -> tuple[Comparison, ...]:
 def profiles(solution: Solution, study: Study) -> tuple[Profile, ...]:
     """Return contact force and contact pressure over the pressure in the finger, beside the threshold."""
     history = solution.history
-    here = np.asarray(history.values("phase")) == PRESS
+    here = history.during(PRESS)
     if not here.any():
         return ()
 
@@ -160,7 +161,7 @@ def _row(solution: Solution) -> int | None:
 
 def _arm_moved(solution: Solution, row: int) -> float:
     """Return the largest displacement of the arm's skin since the end of the phase with gravity, mm."""
-    before = np.flatnonzero(np.asarray(solution.history.values("phase")) != PRESS)[-1]
+    before = np.flatnonzero(~solution.history.during(PRESS))[-1]
     skin = solution.model.mesh.face_nodes(name_of(ARM, "skin"))
     moved = solution.states[row].displacement[skin] - solution.states[int(before)].displacement[skin]
     return float(np.linalg.norm(moved, axis=1).max())
@@ -182,13 +183,9 @@ register(
     Reproduction(
         name=NAME,
         title="Finger-like actuator, massage of a forearm (system 3)",
-        source=(
-            "Numerical and experimental methods for the assessment of a human finger-inspired soft pneumatic actuator "
-            "for gripping applications (MethodsX)"
-        ),
+        source=SOURCE,
         study=study,
         compare=compare,
-        curves=lambda study: (),
         profiles=profiles,
         notes=(
             "Given by the study: 90 kPa, about 30 mm from the wrist, both ends of the arm fixed, E = 270 MPa and "

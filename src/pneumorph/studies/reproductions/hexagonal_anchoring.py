@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pneumorph.measures.centre_of_mass import nodal_mass
 from pneumorph.mechanics import Model, Symmetry
 from pneumorph.solution import Solution
-from pneumorph.studies.comparison import Comparison, Profile, ReportedCurve, Series
+from pneumorph.studies.comparison import Comparison, Profile, Series
 from pneumorph.studies.reproductions.hexagonal_expansion import (
     ASSUMED,
     COLUMN,
@@ -145,11 +145,6 @@ def profiles(solution: Solution, study: Study) -> tuple[Profile, ...]:
     return (Profile("holding-pressure", title, "tilt (°)", "pressure (kPa)", tuple(curves)),)
 
 
-def curves(study: Study) -> tuple[ReportedCurve, ...]:
-    """Return no curve: the study reports no forces."""
-    return ()
-
-
 register(
     Reproduction(
         name=NAME,
@@ -157,7 +152,6 @@ register(
         source=SOURCE,
         study=study,
         compare=compare,
-        curves=curves,
         profiles=profiles,
         notes=(
             *ASSUMED,

@@ -8,7 +8,7 @@ from typing import Any
 from pneumorph.gaits import Foot, Gait, Locomotion, earthworm, locomotion
 from pneumorph.mechanics import Phase
 from pneumorph.solution import Solution
-from pneumorph.studies.comparison import Comparison, ReportedCurve
+from pneumorph.studies.comparison import Comparison
 from pneumorph.studies.reproductions.hexagonal_expansion import DIAMETER, SOURCE, mirrors
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
@@ -99,11 +99,6 @@ def compare(solution: Solution, study: Study) -> tuple[Comparison, ...]:
     return tuple(rows)
 
 
-def curves(study: Study) -> tuple[ReportedCurve, ...]:
-    """Return no curve: the study has no numbers of its robot's motion."""
-    return ()
-
-
 register(
     Reproduction(
         name=NAME,
@@ -111,7 +106,6 @@ register(
         source=SOURCE,
         study=study,
         compare=compare,
-        curves=curves,
         notes=(
             "Given by the study: section of the prisms, order of the parts, bore of 84 mm. Assumed: the elongation "
             "actuator (a bellows of five rings, 28 mm in radius, walls 3 mm), friction 0.7, 100 kPa in the ends and "

@@ -8,7 +8,7 @@ from pneumorph.closed_form.hexagonal_prism import REPORTED_BENDING, measured_mom
 from pneumorph.measures import ReactionMoment
 from pneumorph.mechanics import State
 from pneumorph.solution import Solution
-from pneumorph.studies.comparison import Comparison, Profile, ReportedCurve, Series
+from pneumorph.studies.comparison import Comparison, Profile, Series
 from pneumorph.studies.reproductions.hexagonal_expansion import ASSUMED, SHORT, SOURCE, WALLS
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
@@ -103,11 +103,6 @@ def profiles(solution: Solution, study: Study) -> tuple[Profile, ...]:
     )
 
 
-def curves(study: Study) -> tuple[ReportedCurve, ...]:
-    """Return no curve over the history: the moment of the whole is in a figure of its own."""
-    return ()
-
-
 register(
     Reproduction(
         name=NAME,
@@ -115,7 +110,6 @@ register(
         source=SOURCE,
         study=study,
         compare=compare,
-        curves=curves,
         profiles=profiles,
         notes=(
             ASSUMED[0],

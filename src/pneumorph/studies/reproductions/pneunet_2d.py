@@ -19,6 +19,7 @@ from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
 from pneumorph.units import show
 
+SOURCE = "A combined analytical and numerical study of locomotion of pneumatic-network soft robots"
 CAVITIES = ("PN1", "PN2", "PN3")
 PRESSURE = 0.013  # MPa
 FEET = {"rear": "rear_foot", "front": "front_foot"}
@@ -79,7 +80,7 @@ def compare(solution: Solution, study: Study) -> tuple[Comparison, ...]:
     """Return forces of the ends, motion of the centre of mass and bending of a segment against what was reported."""
     found = motion(solution, study)
     return (
-        *_forces(found), *_motion(found), *_step_size(solution, study, found), *_apart(solution), *_bending(study)
+        *_forces(found), *_motion(found), *_step_size(solution, study, found), *apart(solution), *_bending(study)
     )  # fmt: skip
 
 
@@ -169,7 +170,8 @@ def _step_size(solution: Solution, study: Study, found: Locomotion) -> list[Comp
     return [Comparison("displacement in larger increments over that of the run", "cycle 1", 1.0, share, "", note)]
 
 
-def _apart(solution: Solution) -> list[Comparison]:
+def apart(solution: Solution) -> list[Comparison]:
+    """Return the smallest distance of surfaces in a run as a row."""
     least = solution.history.smallest("contact_distance:")
     return [Comparison("smallest distance of surfaces", "all states", 0.0, least, "mm", "over 0: nothing intersects")]
 
@@ -203,7 +205,7 @@ register(
     Reproduction(
         name="pneunet-2d",
         title="PneuNet crawler in plane strain, undulation (system 2)",
-        source="A combined analytical and numerical study of locomotion of pneumatic-network soft robots",
+        source=SOURCE,
         study=study,
         compare=compare,
         curves=curves,

@@ -10,7 +10,8 @@ from pneumorph.errors import InputError
 from pneumorph.gaits import Foot, Locomotion, locomotion
 from pneumorph.geometry import Quadruped
 from pneumorph.solution import Solution
-from pneumorph.studies.comparison import Comparison, Profile, ReportedCurve, Series
+from pneumorph.studies.comparison import Comparison, Profile, Series
+from pneumorph.studies.reproductions.pneunet_2d import SOURCE, apart
 from pneumorph.studies.reproductions.quadruped_leg import leg_angles
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
@@ -100,12 +101,7 @@ def motion(solution: Solution, study: Study) -> Locomotion:
 def compare(solution: Solution, study: Study) -> tuple[Comparison, ...]:
     """Return forces under gravity, the way of both gaits and of the crawling's phases against what was reported."""
     found = motion(solution, study)
-    return (*_forces(found), *_undulation(found, study), *_crawling(found, study), *_apart(solution))
-
-
-def curves(study: Study) -> tuple[ReportedCurve, ...]:
-    """Return none: the study's figures are not given as numbers."""
-    return ()
+    return (*_forces(found), *_undulation(found, study), *_crawling(found, study), *apart(solution))
 
 
 def profiles(solution: Solution, study: Study) -> tuple[Profile, ...]:
@@ -192,19 +188,13 @@ def _crawling(found: Locomotion, study: Study) -> list[Comparison]:
     return [*rows, Comparison("height of the centre of mass, vii over iii", "crawling", 1.0, ratio, "", note)]
 
 
-def _apart(solution: Solution) -> list[Comparison]:
-    least = solution.history.smallest("contact_distance:")
-    return [Comparison("smallest distance of surfaces", "all states", 0.0, least, "mm", "over 0: nothing intersects")]
-
-
 register(
     Reproduction(
         name="pneunet-quadruped",
         title="PneuNet quadruped, undulation and crawling (system 2)",
-        source="A combined analytical and numerical study of locomotion of pneumatic-network soft robots",
+        source=SOURCE,
         study=study,
         compare=compare,
-        curves=curves,
         profiles=profiles,
         notes=(
             "Given by the study: 135.7 x 58.5 x 6.3 mm, five cavities, Ecoflex 5.3 mm on PDMS 1 mm, channels 4 mm high "

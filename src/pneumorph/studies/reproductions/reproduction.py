@@ -17,7 +17,7 @@ class Reproduction:
 
     study:   (quick) -> what is solved; a quick one is coarser and stops earlier.
     compare: (solution, study) -> rows of reported and computed numbers; what was not reached has no computed one.
-    curves:  (study) -> reported curves for the figures.
+    curves:  (study) -> reported curves for the figures; none where it is left out.
     profiles: (solution, study) -> further figures, such as stress along a line.
     notes:   sentences on what was assumed and what was left out.
     parts:   label -> name of a reproduction, for a system of several runs; its own name is among them. All are run, the
@@ -29,7 +29,7 @@ class Reproduction:
     source: str
     study: Callable[[bool], Study]
     compare: Callable[[Solution, Study], tuple[Comparison, ...]]
-    curves: Callable[[Study], tuple[ReportedCurve, ...]]
+    curves: Callable[[Study], tuple[ReportedCurve, ...]] = lambda study: ()
     notes: tuple[str, ...] = ()
     profiles: Callable[[Solution, Study], tuple[Profile, ...]] = lambda solution, study: ()
     parts: Mapping[str, str] = field(default_factory=dict)
