@@ -157,3 +157,34 @@ def face_area(mesh, name):
 def test_end_walls_thinner_than_the_others_are_refused():
     with pytest.raises(GeometryError, match=r"end_wall = 1 mm: expected at least expansion_wall = 2 mm"):
         HexagonalPrism(end_wall=1.0)
+
+
+@pytest.mark.parametrize("half", [False, True])
+def test_an_end_plate_closes_the_free_end_but_for_its_hole(half):
+    sizes = {"chambers": 2, "length": 24.0, "end_wall": 4.0, "half": half}
+    prism = HexagonalPrism(**sizes, end_plate=4.0, end_plate_bore=2.0)
+    open_end, mesh = (generate(p, hexahedra=True) for p in (HexagonalPrism(**sizes), prism))
+    inserted = (0.5 if half else 1.0) * math.pi * (14.0**2 - 2.0**2) * 4.0
+    assert inspect(mesh).volume - inspect(open_end).volume == pytest.approx(inserted, rel=1e-3)
+    solid = generate(prism, coarse=True)
+    assert inspect(solid).volume == pytest.approx(inspect(mesh).volume, rel=0.01)
+    for found in (mesh, solid):
+        assert set(found.faces) == set(prism.face_names)
+        (plate,) = (block for block in found.blocks if block.domain == "plate")
+        assert found.points[plate.nodes, 2].min() == pytest.approx(20.0)
+        radius = np.hypot(*found.points[np.unique(plate.nodes), :2].T)
+        assert radius.min() == pytest.approx(2.0, abs=0.3)  # coarse tetrahedra cut the corners
+        assert radius.max() == pytest.approx(20.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"end_plate": -1.0}, "end_plate = -1 mm: expected a length of at least 0"),
+        ({"end_plate": 112.0}, "end_plate = 112 mm leaves no column: expected less than length = 112 mm"),
+        ({"end_plate_bore": 14.0}, r"end_plate_bore = 14 mm leaves no plate in the core: .* core_radius = 14 mm"),
+    ],
+)
+def test_an_end_plate_that_does_not_fit_is_refused(change, message):
+    with pytest.raises(GeometryError, match=message):
+        HexagonalPrism(**change)

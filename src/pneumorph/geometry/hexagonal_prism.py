@@ -24,6 +24,9 @@ class HexagonalPrism(Actuator):
     them; the airway runs through the gaps on the column's side inside a small bridge. Blocks as wide as the column's
     side touch the next assembly along the hexagon's edge only, which leaves a 60 degree groove and a clean solid.
 
+    An end plate (domain "plate", its own faces "plate") takes the place of the last part of the column and bears the
+    free end, as what modules of a robot are joined by does: without one a soft end rolls in when chambers balloon.
+
     Source: Wang, Zhang, Zhang, Zhao, Peng, Actuators 2022, 11, 125, Table 1 and Figure 5. Raises GeometryError.
     """
 
@@ -43,6 +46,8 @@ class HexagonalPrism(Actuator):
     airway_height: float = millimetres(3.0, "h3", "height of the airway")
     airway_roof: float = millimetres(1.5, "h4", "wall of the bridge above the airway")
     airway_side: float = millimetres(1.5, "w4", "wall of the bridge beside the airway")
+    end_plate: float = millimetres(0.0, "t", "thickness of a plate that closes the free end, 0 for none", zero=True)
+    end_plate_bore: float = millimetres(3.0, "r2", "radius of the hole in that plate, for the tubing")
     half: bool = field(default=False, metadata={"help": "keep x >= 0 only, cut in a plane between two cavities"})
 
     @property
@@ -52,8 +57,14 @@ class HexagonalPrism(Actuator):
 
     @property
     def face_names(self) -> tuple[str, ...]:
-        """clamp, tip, outer, core, the cavities, and symmetry_x of a half."""
-        return ("clamp", "tip", "outer", "core", *self.cavities, *(("symmetry_x",) if self.half else ()))
+        """clamp, tip, outer, core, plate if there is one, the cavities, and symmetry_x of a half."""
+        plate = ("plate",) if self.end_plate > 0.0 else ()
+        return ("clamp", "tip", "outer", "core", *plate, *self.cavities, *(("symmetry_x",) if self.half else ()))
+
+    @property
+    def domains(self) -> tuple[str, ...]:
+        """body, and plate if there is one."""
+        return ("body", "plate") if self.end_plate > 0.0 else ("body",)
 
     @property
     def bending_walls(self) -> Mapping[str, float]:
@@ -131,6 +142,15 @@ class HexagonalPrism(Actuator):
             "(side * sqrt(3) / 2)",
         )
         self._require(
+            self.end_plate < self.length,
+            f"end_plate = {self.end_plate:g} mm leaves no column: expected less than length = {self.length:g} mm",
+        )
+        self._require(
+            self.end_plate_bore < self.core_radius,
+            f"end_plate_bore = {self.end_plate_bore:g} mm leaves no plate in the core: expected less than core_radius "
+            f"= {self.core_radius:g} mm",
+        )
+        self._require(
             self.end_wall >= self.expansion_wall,
             f"end_wall = {self.end_wall:g} mm: expected at least expansion_wall = {self.expansion_wall:g} mm, the "
             "thinnest walls",
@@ -166,21 +186,31 @@ class HexagonalPrism(Actuator):
         )
 
     def shape(self) -> occ.Shape:
-        """Return the solid; its faces are clamp, tip, core, outer and cavity_1 to cavity_6."""
+        """Return the solid; its faces are clamp, tip, core, outer and cavity_1 to cavity_6, and those of a plate."""
         outline = occ.regular_polygon(SIDES, self.side, math.pi / SIDES)
-        column = occ.prism(outline, 0.0, self.length, "clamp", "tip")
-        column = occ.cut(column, [occ.cylinder(self.core_radius, 0.0, self.length, "core")])
+        top = self.length - self.end_plate
+        column = occ.prism(outline, 0.0, top, "clamp", "tip")
+        column = self._kept(occ.cut(column, [occ.cylinder(self.core_radius, 0.0, top, "core")]))
         solids = [column]
         air = []
         for number, name in self.sides:
             silicone, hollow = self._assembly(name)
             solids += [occ.turned(part, 60.0 * number) for part in silicone]
             air.append(occ.turned(occ.fused(hollow), 60.0 * number))
-        if self.half:
-            far = 4.0 * (self.side + self.block_height)
-            kept = occ.box((0.0, -far, -self.length), (far, far, 2.0 * self.length))
-            solids[0] = occ.common(column, occ.name_low_faces(kept, {"x": "symmetry_x"}))
-        return occ.check_solid(occ.cut(occ.fused(solids), air), 1, "HexagonalPrism")
+        body = occ.check_solid(occ.cut(occ.fused(solids), air), 1, "HexagonalPrism")
+        if not self.end_plate:
+            return body
+        plate = occ.prism(outline, top, self.length, "plate", "tip")
+        plate = self._kept(occ.cut(plate, [occ.cylinder(self.end_plate_bore, top, self.length, "plate")]))
+        return occ.bonded([(body, "body"), (plate, "plate")])
+
+    def _kept(self, solid: occ.Shape) -> occ.Shape:
+        """Return a part of the column, cut if this is a half."""
+        if not self.half:
+            return solid
+        far = 4.0 * (self.side + self.block_height)
+        kept = occ.box((0.0, -far, -self.length), (far, far, 2.0 * self.length))
+        return occ.common(solid, occ.name_low_faces(kept, {"x": "symmetry_x"}))
 
     def _assembly(self, name: str) -> tuple[list[occ.Shape], list[occ.Shape]]:
         """Return the silicone blocks and the air boxes of the assembly on the side that looks along x."""

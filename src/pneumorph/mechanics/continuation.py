@@ -69,7 +69,7 @@ def march(
             step = Increment(last, seconds, inertia, time - last.time)
             try:
                 try:
-                    found = newton.solve(newton.reachable(predictor.trial(time), last, values), values, step)
+                    found = newton.solve(newton.start(predictor.trial(time), values, step), values, step)
                 except IncrementFailedError as failure:
                     if not settings.viscosity or increment > phase.first or inertia:
                         raise

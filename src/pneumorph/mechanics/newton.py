@@ -111,9 +111,11 @@ class Newton:
             if not np.isfinite(error):
                 raise IncrementFailedError("the residual is not finite")
             converged = (error <= tolerance or (settled and error <= 1e-3)) and iteration > 0
-            if shift and shift.iterations < settings.relaxations:
+            told = not self._contact  # tangents of surfaces on the verge of touching are now stable, now not
+            if told and shift and shift.iterations < settings.relaxations:
                 converged = False  # only the tangent alone tells whether this is a stable state
-            if converged and unstable and not increment.start.unstable_modes and shift.again(iteration):
+            saddle = converged and told and unstable and not increment.start.unstable_modes
+            if saddle and shift.again(iteration):
                 _log.debug("iteration %d: a saddle with unstable modes %s, started again", iteration, unstable)
                 trial, factors, before = origin, None, np.inf
                 continue
@@ -178,8 +180,8 @@ class Newton:
         raise IncrementFailedError(f"no convergence in {iteration} iterations")
 
     def _shift(self, increment: Increment) -> Shift:
-        """Return the shift of an increment: none where there is drag or contact, or where viscosity is switched off."""
-        allowed = increment.drag is None and not self._contact
+        """Return the shift of an increment: none where there is drag, or where viscosity is switched off."""
+        allowed = increment.drag is None
         unit = self._shear / self.model.mesh.size**2
         return Shift(self._mass, self.settings.viscosity * unit if allowed else 0.0)
 
@@ -199,10 +201,32 @@ class Newton:
             raise IncrementFailedError(f"surfaces in contact let nothing move: {', '.join(names)}")
         return share
 
-    def reachable(self, trial: Trial, last: State, values: Mapping[str, float]) -> Trial:
-        """Return the part of the way from the last state to a prediction on which nothing collides."""
+    def start(self, trial: Trial, values: Mapping[str, float], increment: Increment) -> Trial:
+        """Return where an increment begins: the prediction, or in contact the last state if its forces balance better.
+
+        In contact a prediction counts as far as nothing collides, and even there barriers may push with many times the
+        applied forces.
+        """
         if not self._contact:
             return trial
+        last = increment.start
+        predicted = self._reachable(trial, last, values)
+        resting = Trial(last.displacement, last.pressure_modes, trial.pressure, self._contact.ways(last.values))
+        return min((predicted, resting), key=lambda place: self._unbalanced(place, values, increment))
+
+    def _unbalanced(self, trial: Trial, values: Mapping[str, float], increment: Increment) -> float:
+        """Return the size of the forces that are not in balance, N, without friction, at the pressures of a trial."""
+        position = self.model.mesh.points + trial.displacement
+        force = self._assemble(trial, increment, tangent=False).force - self._load(values)
+        for surface, pressure in zip(self._surfaces, trial.pressure, strict=True):
+            force = force - pressure * surface.gradient(position)
+        if increment.drag is not None:
+            force = force + increment.drag.force(trial.displacement)
+        force = force + self._contact.evaluate(position, trial.ways, None, hessian=False).gradient
+        return float(np.linalg.norm(force[self._free]))
+
+    def _reachable(self, trial: Trial, last: State, values: Mapping[str, float]) -> Trial:
+        """Return the part of the way from the last state to a prediction on which nothing collides."""
         ways = self._contact.ways(last.values)
         du, dw = trial.displacement - last.displacement, self._contact.ways(values) - ways
         share = self._contact.limit((last.positions, ways), (last.positions + du, ways + dw))
@@ -213,10 +237,11 @@ class Newton:
         pressure = before + share * (trial.pressure - before)
         return Trial(last.displacement + share * du, modes, pressure, ways + share * dw)
 
-    def _assemble(self, trial: Trial, increment: Increment) -> Assembly:
+    def _assemble(self, trial: Trial, increment: Increment, *, tangent: bool = True) -> Assembly:
         position = self.model.mesh.points + trial.displacement
+        memory, seconds = increment.start.memory, increment.seconds
         return self.model.body.assemble(
-            position, trial.modes, memory=increment.start.memory, seconds=increment.seconds, carried=trial.carried
+            position, trial.modes, tangent, memory=memory, seconds=seconds, carried=trial.carried
         )
 
     def _load(self, values: Mapping[str, float]) -> Array:

@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 _AIR = "air"
 _SIDE = "side"
 _CUT = "symmetry_x"
+_CORE, _BORE = -1.0, -2.0  # v of the wall of the core, and of the hole in an end plate
 
 
 def mesh_prism(prism: HexagonalPrism, size: float = math.inf) -> Mesh:
@@ -55,8 +56,14 @@ def _sector(prism: HexagonalPrism, size: float) -> Mesh:
     row = nested([(prism.airway_width, prism.airway_height), bridge, chamber, block], rings)
     floor = np.unique(np.round(row.points[np.abs(row.points[:, 1]) < 1e-9, 0], 9))
     across = lines([-0.5 * prism.side, *floor, 0.5 * prism.side])
-    grid = BlockGrid(tensor(across, [-1.0, 0.0]) + row, _planes(prism))
-    grid = grid.fill("body", v=(-1.0, 0.0))
+    plate = prism.end_plate > 0.0
+    inmost = _BORE if plate else _CORE
+    rings_inside = [_BORE, 0.5 * (_BORE + _CORE)] if plate else []
+    grid = BlockGrid(tensor(across, [*rings_inside, _CORE, 0.0]) + row, _planes(prism))
+    grid = grid.fill("body", v=(_CORE, 0.0))
+    within = (prism.length - prism.end_plate, prism.length)
+    if plate:
+        grid = grid.fill("plate", v=(_BORE, 0.0), w=within)
     for low, ends in zip(prism.chamber_starts, prism.blocks, strict=True):
         grid = grid.fill("body", u=_about(block), v=(0.0, block[1]), w=ends)
         grid = grid.hollow(_AIR, u=_about(chamber), v=(0.0, chamber[1]), w=(low, low + prism.chamber_length))
@@ -66,13 +73,15 @@ def _sector(prism: HexagonalPrism, size: float) -> Mesh:
         grid = grid.fill("body", u=_about(bridge), v=(0.0, bridge[1]), w=(low, high))
         grid = grid.hollow(_AIR, u=_about(airway), v=(0.0, airway[1]), w=(low - wall, high + wall))
     # rows that begin at the clamped end are clamped with it; the free end's face is the column's alone
-    patches = [("clamp", {"w": (0.0, 0.0)}), ("tip", {"w": (prism.length, prism.length), "v": (-1.0, 0.0)})]
+    patches = [("clamp", {"w": (0.0, 0.0)}), ("tip", {"w": (prism.length, prism.length), "v": (inmost, 0.0)})]
+    if plate:
+        patches += [("plate", {"v": (_BORE, _BORE)}), ("plate", {"v": (_BORE, _CORE), "w": (within[0], within[0])})]
     return grid.mesh(
-        lambda points: around_core(points, prism),
+        lambda points: _with_plate(points, prism),
         patches=[
             *patches,
-            ("core", {"v": (-1.0, -1.0)}),
-            *((_SIDE, {"u": (u, u), "v": (-1.0, 0.0)}) for u in (-0.5 * prism.side, 0.5 * prism.side)),
+            ("core", {"v": (_CORE, _CORE)}),
+            *((_SIDE, {"u": (u, u), "v": (inmost, 0.0)}) for u in (-0.5 * prism.side, 0.5 * prism.side)),
         ],
         bending_walls=prism.bending_walls,
     )
@@ -83,7 +92,7 @@ def _planes(prism: HexagonalPrism) -> Array:
     stops = [0.0]
     for low, (bottom, top) in zip(prism.chamber_starts, prism.blocks, strict=True):
         stops += [bottom, low, low + prism.chamber_length, top]
-    return lines([*stops, prism.length])
+    return lines(sorted([*stops, prism.length - prism.end_plate, prism.length]))
 
 
 def _about(size: tuple[float, float]) -> tuple[float, float]:
@@ -95,10 +104,19 @@ def around_core(points: Array, prism: HexagonalPrism) -> Array:
     u, v, w = points.T
     x, y = np.full_like(u, prism.apothem), -u
     far = np.hypot(x, y)
-    share = np.clip(1.0 + v, 0.0, 1.0)
+    share = np.clip(v - _CORE, 0.0, 1.0)
     shrunk = prism.core_radius / far
     column = shrunk + share * (1.0 - shrunk)
     return np.column_stack([x * column + np.maximum(v, 0.0), y * column, w])
+
+
+def _with_plate(points: Array, prism: HexagonalPrism) -> Array:
+    """Return places as `around_core` does; v from -2 to -1 leads from the hole in an end plate to the core's wall."""
+    u, v, w = points.T
+    places = around_core(np.column_stack([u, np.maximum(v, _CORE), w]), prism)
+    bore = prism.end_plate_bore / prism.core_radius
+    places[:, :2] *= (bore + np.clip(v - _BORE, 0.0, 1.0) * (1.0 - bore))[:, None]
+    return places
 
 
 def about_z(degrees: float) -> Turn:

@@ -21,6 +21,7 @@ COMPARED = tuple(pressure for pressure, _ in published.REPORTED_BENDING)  # MPa
 QUICK_END, END = COMPARED[1], COMPARED[-1]
 TOUCH = 0.2  # MPa at which neighbouring chamber walls touch in the experiment
 WALLS = "walls"
+_PLATE = 4.0  # mm, the plate at the free end
 _REACH = 0.2  # mm, a tenth of the gaps: a softer contact takes fewer iterations
 IMAGE = "image"
 # walls meet those of the other half in the plane of the cut; it has to lie behind it by the reach, because rows touch
@@ -48,13 +49,22 @@ def study(quick: bool) -> Study:
     stops = [show(p, "pressure") for p in COMPARED if p < end]
     table = {
         "title": "Hexagonal-prism actuator, bending by two neighbouring cavities",
-        "actuator": {"template": "hexagonal-prism", "half": True, "end_wall": show(_end_wall(), "length")},
-        "material": {"name": "shore-a45-platinum"},
+        "actuator": {
+            "template": "hexagonal-prism",
+            "half": True,
+            "end_wall": show(_end_wall(), "length"),
+            "end_plate": show(_PLATE, "length"),
+        },
+        "material": {
+            "body": {"name": "shore-a45-platinum"},
+            # next to silicone of 0.22 MPa as good as rigid
+            "plate": {"law": "neo-hookean", "mu": "10 MPa", "bulk": "500 MPa"},
+        },
         "mesh": {"hexahedra": True},
         "cavity": [{"name": name} for name in DRIVEN],
         "body": {IMAGE: {"shape": "half-space", "point": [show(-_BEHIND, "length"), "0 mm", "0 mm"], "normal": "x"}},
         "contact": [
-            {"name": WALLS, "faces": ["outer"], "reach": show(_REACH, "length")},
+            {"name": WALLS, "faces": ["outer", "core"], "reach": show(_REACH, "length")},
             {"name": IMAGE, "faces": ["outer"], "body": IMAGE, "reach": show(_REACH, "length")},
         ],
         "phase": [
@@ -68,7 +78,7 @@ def study(quick: bool) -> Study:
                 "largest_increment": 0.01 / end,
             }
         ],
-        "solver": {"tolerance": 1e-6},  # of forces; angles change in the sixth digit
+        "solver": {"tolerance": 1e-4},  # of forces; angles change in the fourth digit
     }
     return study_from(table, "hexagonal-prism")
 
