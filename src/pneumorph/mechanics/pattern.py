@@ -77,6 +77,21 @@ class Pattern:
         rank = np.searchsorted(self.keys, first * self.nodes + second) - self.start[first]
         return self.indptr[rows] + np.where(first == second, columns - rows, d - rows % d + d * rank + columns % d)
 
+    def embedded(self, wider: Pattern) -> Integers:
+        """Return where the values stand among those of a pattern that has all neighbours of this one, and more."""
+        d = self.dimension
+        node = self.keys // self.nodes
+        rank = np.arange(len(self.keys)) - self.start[node]
+        there_rank = np.searchsorted(wider.keys, self.keys) - wider.start[node]
+        result = np.empty(self.indptr[-1], dtype=np.int64)
+        for i in range(d):
+            here, there = self.indptr[:-1][i::d], wider.indptr[:-1][i::d]
+            for j in range(d - i):
+                result[here + j] = there + j
+            for j in range(d - i, 2 * d - i):
+                result[here[node] + d * rank + j] = there[node] + d * there_rank + j
+        return result
+
     def touching(self, unknowns: Integers) -> Integers:
         """Return the positions of all values in the rows and columns of some unknowns."""
         marked = np.zeros(self.nodes * self.dimension, dtype=bool)

@@ -26,22 +26,27 @@ class WidenedPattern:
         """Return the pairs of nodes (k, 2) of matrix entries that have no place."""
         d, nodes = self.base.dimension, self.base.nodes
         first, second = entries[0] // d, entries[1] // d
-        keys = np.unique((first * nodes + second)[first != second])
-        keys = keys[~np.isin(keys, self.pattern.keys, assume_unique=True)]
+        keys, _ = self._without_place((first * nodes + second)[first != second])
         return np.column_stack([keys // nodes, keys % nodes])
 
     def include(self, pairs: Integers) -> bool:
         """Give places to pairs of nodes (k, 2), first < second; return whether the pattern had to grow."""
         nodes = self.base.nodes
-        keys = np.union1d(self.pattern.keys, pairs[:, 0] * nodes + pairs[:, 1])
-        if len(keys) == len(self.pattern.keys):
+        new, places = self._without_place(pairs[:, 0] * nodes + pairs[:, 1])
+        if not len(new):
             return False
+        keys = np.insert(self.pattern.keys, places, new)
         start = np.searchsorted(keys, np.arange(nodes + 1) * nodes)
         self.pattern = Pattern(nodes, self.base.dimension, keys, start)
-        # the base's values in a row keep their order: find the columns of each in the wider row
-        rows = np.repeat(np.arange(nodes * self.base.dimension), np.diff(self.base.indptr))
-        self._places = self.pattern.places(rows, self.base.indices.astype(np.int64))
+        self._places = self.base.embedded(self.pattern)
         return True
+
+    def _without_place(self, keys: Integers) -> tuple[Integers, Integers]:
+        """Return those of some keys of pairs that the pattern has not, sorted, each once, and where they belong."""
+        wanted, there = np.unique(keys), self.pattern.keys
+        places = np.searchsorted(there, wanted)
+        new = np.append(there, -1)[places] != wanted
+        return wanted[new], places[new]
 
     def widen(self, values: Array) -> Array:
         """Return values in the order of the base's pattern in that of this one."""
