@@ -45,8 +45,11 @@ def follow(model, programme, settings):
 
 @pytest.fixture
 def jumping(monkeypatch):
-    """Let the steps of the solver jump over surfaces."""
+    """Let the predictions and steps of the solver jump over surfaces."""
     monkeypatch.setattr(Contacts, "limit", lambda self, start, end: 1.0)
+    monkeypatch.setattr(
+        Newton, "start", lambda self, trial, values, increment: self._reachable(trial, increment.start, values)
+    )
 
 
 def apart(states):
