@@ -101,6 +101,8 @@ def test_a_finer_mesh_has_more_cells_of_the_same_body():
 def test_settings_of_other_meshes_and_wrong_dimensions_are_refused():
     with pytest.raises(MeshError, match="grading"):
         generate(SHORT, grading=0.5)
+    with pytest.raises(GeometryError, match="end_plate = 4 mm: expected 0, robots have none"):
+        PipeRobot(end_plate=4.0)
     with pytest.raises(GeometryError, match="modules = 2: expected 1 or 3"):
         PipeRobot(modules=2)
     with pytest.raises(GeometryError, match="half and quarter are both set"):

@@ -44,6 +44,7 @@ class PipeRobot(HexagonalPrism):
 
     def _check_fit(self) -> None:
         super()._check_fit()
+        self._require(self.end_plate == 0.0, f"end_plate = {self.end_plate:g} mm: expected 0, robots have none")
         self._require(self.modules in (1, 3), f"modules = {self.modules!r}: expected 1 or 3")
         cuts = {"half": self.half, "quarter": self.quarter, "eighth": self.eighth}
         for name, value in cuts.items():

@@ -49,7 +49,7 @@ def schedule_figure(programme: Programme, cavities: Sequence[str], kind: str = "
         colour = style.LINES[number % len(style.LINES)]
         axes.plot(places, printed(values, kind), color=colour)
         axes.fill_between(places, printed(values, kind), color=colour, alpha=0.15, linewidth=0.0)
-        axes.set_ylabel(named(cavity, kind))
+        axes.set_ylabel(named(cavity, kind).replace(" [", "\n["), rotation=0, ha="right", va="center")
         for place in places[1:-1]:
             axes.axvline(place, color=style.GRID, linewidth=0.8)
     if len(programme.phases) <= _MOST_NAMES:

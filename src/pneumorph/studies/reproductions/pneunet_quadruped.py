@@ -108,15 +108,14 @@ def profiles(solution: Solution, study: Study) -> tuple[Profile, ...]:
     """Return forces of legs, centre of mass and curl of a leg as figures."""
     curl = _curl(study)
     found = motion(solution, study)
-    phases = enumerate((phase.name for phase in study.programme.phases), 1)
-    ends = {f"{number} {name}": at for number, name in phases if (at := found.at(float(number))) is not None}
+    ends = [at for number in range(1, len(study.programme.phases) + 1) if (at := found.at(float(number))) is not None]
     legs = [
         Series(face, found.time, 1e3 * force[:, 2]) for face, force in found.force.items() if face.startswith("foot_")
     ]
-    path, marks = found.centre[:, [0, 2]].T, found.centre[list(ends.values())][:, [0, 2]].T
+    path, marks = found.centre[:, [0, 2]].T, found.centre[ends][:, [0, 2]].T
     return (
         Profile(
-            "legs", f"Vertical force of each leg; phases: {', '.join(ends)}", "time of the programme [phases]",
+            "legs", "Vertical force of each leg", "time of the programme [phases, as in the schedule]",
             "force [mN]", tuple(legs),
         ),
         Profile(
