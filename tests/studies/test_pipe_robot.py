@@ -29,6 +29,7 @@ from pneumorph.studies.reproductions import hexagonal_anchoring as anchoring
 from pneumorph.studies.reproductions import hexagonal_earthworm as earthworm
 from pneumorph.studies.reproductions import hexagonal_expansion as expansion
 from pneumorph.studies.reproductions import hexagonal_moment as moment
+from pneumorph.studies.reproductions import pipe_gaits
 
 PARTS = ("expansion", "anchoring", "moment", "earthworm")
 
@@ -202,7 +203,7 @@ def test_the_robot_holds_before_gravity_comes_along_the_pipe_and_climbs_once_if_
     assert quick.loads[0].direction == (0.0, 0.0, -1.0)
     assert [phase.name for phase in quick.programme.phases[:3]] == ["hold", "gravity", "+middle"]
     assert (quick.cycle_ends, full.cycle_ends) == ((2, 8), (2, 8, 14))
-    assert quick.contacts[0].friction == earthworm.FRICTION
+    assert quick.contacts[0].friction == pipe_gaits.FRICTION
 
 
 def test_a_run_that_did_not_finish_its_cycle_has_no_way(monkeypatch):

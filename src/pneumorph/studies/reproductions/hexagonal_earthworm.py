@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-from pneumorph.gaits import Foot, Gait, Locomotion, earthworm, locomotion
+from pneumorph.gaits import Gait, earthworm
 from pneumorph.mechanics import Phase
 from pneumorph.solution import Solution
 from pneumorph.studies.comparison import Comparison
 from pneumorph.studies.reproductions.hexagonal_expansion import DIAMETER, SOURCE, mirrors
+from pneumorph.studies.reproductions.pipe_gaits import FEET, PIPE, cycle_rows, in_pipe, motion, phases_and_cycle
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
-from pneumorph.units import show
 
 NAME = "hexagonal-prism-earthworm"
-PIPE = "pipe"
-FEET = ("rear", "front")
-FRICTION = 0.7  # assumed
-FORWARD = (0.0, 0.0, 1.0)
 # MPa: what presses an end against the pipe, and what lengthens the bellows
 GRIP, STRETCH = 0.100, 0.006
-_KINDS = {"gravity": "acceleration"}
 
 
 def study(quick: bool) -> Study:
@@ -36,15 +30,6 @@ def study(quick: bool) -> Study:
 
 def _table(gait: Gait, quick: bool) -> dict[str, Any]:
     """Return the study of the gait as plain data."""
-    bore = {"shape": "pipe", "point": ["0 mm"] * 3, "radius": show(DIAMETER / 2.0, "length"), "axis": "z"}
-    contact = {
-        "name": PIPE,
-        "faces": list(FEET),
-        "body": PIPE,
-        "friction": FRICTION,
-        "reach": "0.1 mm",
-        "creep": "0.05 mm/s",
-    }
     return {
         "title": "Pipe robot, earthworm gait up the 84 mm pipe",
         "measures": ["centre_of_mass_z", f"normal_force:{PIPE}"],
@@ -52,51 +37,16 @@ def _table(gait: Gait, quick: bool) -> dict[str, Any]:
         "mesh": {"size": "coarse" if quick else "automatic"},
         "gravity": {"direction": "-z"},
         "support": mirrors("xy"),
-        "body": {PIPE: bore},
-        "contact": [contact],
-        "phase": [_phase(phase) for phase in (*gait.settle, *gait.phases)],
         # an end that meets the pipe in one increment may jump to and fro: then a smaller one is quicker
         "solver": {"contact_iterations": 25},
-        "cycle": {"phases": [phase.name for phase in gait.phases], "repeat": gait.cycles},
+        **in_pipe(DIAMETER, reach="0.1 mm", creep="0.05 mm/s"),
+        **phases_and_cycle(gait),
     }
-
-
-def _phase(phase: Phase) -> dict[str, Any]:
-    """Return a phase as the section of a study file."""
-    targets = {name: show(value, _KINDS.get(name, "pressure")) for name, value in phase.targets.items()}
-    return {
-        "name": phase.name,
-        "targets": targets,
-        "first_increment": phase.first,
-        "largest_increment": phase.largest,
-        "duration": show(phase.duration or 0.0, "time"),
-        "inertia": phase.inertia,
-    }
-
-
-def motion(solution: Solution, study: Study) -> Locomotion:
-    """Return the motion of a run of the study."""
-    return locomotion(solution.states, study.cycle_ends, [Foot(face, PIPE) for face in FEET], FORWARD)
 
 
 def compare(solution: Solution, study: Study) -> tuple[Comparison, ...]:
     """Return the way of each cycle, slip of the ends and cost; the study reports that the robot moves forward."""
-    found = motion(solution, study)
-    rows = []
-    for number in range(len(found.ends) - 1):
-        done = number < len(found.displacements)
-        cycle = f"cycle {number + 1}"
-        way = float(found.displacements[number, 2]) if done else None
-        rows.append(Comparison("displacement of the centre of mass", cycle, 0.0, way, "mm", "reported: over 0"))
-        for end in FEET:
-            slid = float(found.backward_slip[end][number]) if done else None
-            rows.append(Comparison(f"way that the {end} end slid back", cycle, 0.0, slid, "mm", "the less the better"))
-        cost = float(found.cost_of_transport[number]) if done else None
-        cost = cost if cost is None or math.isfinite(cost) else None
-        rows.append(Comparison("cost of transport", cycle, 0.0, cost, "", "work delivered over weight and way"))
-    least = solution.history.smallest("contact_distance:")
-    rows.append(Comparison("smallest distance to the pipe", "all states", 0.0, least, "mm", "over 0: none intersect"))
-    return tuple(rows)
+    return cycle_rows(motion(solution, study), solution)
 
 
 register(

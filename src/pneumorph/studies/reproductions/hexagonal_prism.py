@@ -174,9 +174,9 @@ register(
         curves=curves,
         notes=(
             "Given by the study (Table 1): side, length, core radius, chambers and their inner dimensions, expansion "
-            "wall 2 mm. Assumed: gap 2 mm, top and side walls 3 mm, airway 3 x 3 mm with a roof and sides of 1.5 mm, and "
-            "a stiff plate of 4 mm in the free end, as modules of the robot are joined by: without it the last chambers "
-            "roll the end of the open core in from 140 kPa on.",
+            "wall 2 mm. Assumed: gap 2 mm, top and side walls 3 mm, airway 3 x 3 mm with a roof and sides of 1.5 mm, "
+            "and a stiff plate of 4 mm in the free end, as modules of the robot are joined by: without it the last "
+            "chambers roll the end of the open core in from 140 kPa on.",
             "One half is modelled, cut between the two driven cavities, in hexahedra with one cell through each wall. "
             "Walls of the two rows on either side of the cut meet in its plane, to 0.2 mm.",
             "All outer walls may touch each other, without friction. Here neighbouring chamber walls, 2 mm apart at "
