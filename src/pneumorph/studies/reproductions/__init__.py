@@ -8,6 +8,7 @@ from pneumorph.studies.reproductions import (
     hexagonal_anchoring,
     hexagonal_earthworm,
     hexagonal_expansion,
+    hexagonal_inchworm,
     hexagonal_moment,
     hexagonal_prism,
     pneunet_2d,
@@ -24,6 +25,6 @@ from pneumorph.studies.reproductions.reproduction import (
 
 __all__ = [
     "Reproduction", "SystemBySweep", "SystemInParts", "auxetic_skin", "finger", "finger_gripper", "finger_massage",
-    "hexagonal_anchoring", "hexagonal_expansion", "hexagonal_earthworm", "hexagonal_moment", "hexagonal_prism", "names",
-    "pneunet_2d", "pneunet_quadruped", "reproduction", "soft_wheel",
+    "hexagonal_anchoring", "hexagonal_expansion", "hexagonal_earthworm", "hexagonal_inchworm", "hexagonal_moment",
+    "hexagonal_prism", "names", "pneunet_2d", "pneunet_quadruped", "reproduction", "soft_wheel",
 ]  # fmt: skip
