@@ -28,17 +28,18 @@ def run_to(*pressures):
 
 def test_the_hexagonal_prism_is_half_of_the_published_one_with_two_neighbouring_cavities_at_one_pressure():
     study = hexagonal_prism.study(quick=False)
-    assert study.actuator == HexagonalPrism(half=True, end_wall=4.0)
+    assert study.actuator == HexagonalPrism(half=True, end_wall=4.0, end_plate=4.0)
     assert (study.actuator.blocks[0][0], study.actuator.blocks[-1][1]) == (0.0, 112.0)
     # its image in the cut is cavity_3
     assert [cavity.name for cavity in study.cavities] == ["cavity_2"]
     assert study.materials["body"].c10 == 0.11
+    assert study.materials["plate"].shear_modulus > 40.0 * study.materials["body"].shear_modulus
     (phase,) = study.programme.phases
     assert phase.targets == {"cavity_2": 0.28}
     pressures = [study.programme.values(mark)["cavity_2"] for mark in phase.marks]
     np.testing.assert_allclose(pressures, [0.04, 0.08, 0.12, 0.16, 0.20, 0.24], rtol=1e-14)
     walls, image = study.contacts
-    assert (walls.faces, walls.against, walls.friction) == (("outer",), None, 0.0)
+    assert (walls.faces, walls.against, walls.friction) == (("outer", "core"), None, 0.0)
     # the plane of the cut, where walls meet those of the other half: out of reach of what lies in it at rest
     assert image.reach < -image.against.point[0] < 1.1 * image.reach
     assert tuple(image.against.normal) == (1.0, 0.0, 0.0)
