@@ -20,7 +20,7 @@ from pneumorph.studies import load_study, run_study, study_from
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FILES = sorted(path.name for path in EXAMPLES.glob("*.toml"))
 # minutes on one core
-SLOW = {"finger.toml", "gripper.toml", "held-block.toml", "massage.toml", "skinned-tube.toml"}
+SLOW = {"finger.toml", "gripper.toml", "held-block.toml", "massage.toml", "quadruped.toml", "skinned-tube.toml"}
 
 
 @cache
