@@ -64,7 +64,7 @@ def test_a_reproduction_writes_its_comparison(pneumorph, short, no_pictures, tmp
     assert Solution.open(out).about["reproduction"] == "hexagonal-prism"
     page = (out / "report.html").read_text()
     assert "act11050125" in page
-    assert "All outer walls may touch each other" in page
+    assert "All walls may touch" in page
     (out / "comparison.csv").unlink()
     assert pneumorph("report", out).exit_code == 0
     assert (out / "comparison.csv").read_text().splitlines() == lines
