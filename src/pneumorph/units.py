@@ -104,11 +104,14 @@ def to_printed(value: float, kind: str) -> float:
 
 
 def show(value: float, kind: str, digits: int = 4) -> str:
-    """Return an inside value as text with its printed unit.
+    """Return an inside value as text with its printed unit; up to a million, digits before the point are all shown.
 
     >>> show(0.08, "pressure")
     '80 kPa'
+    >>> show(1400.0, "time", 3)
+    '1400 s'
     """
     unit = printed_unit(kind)
-    text = f"{to_printed(value, kind):.{digits}g}"
+    number = to_printed(value, kind)
+    text = f"{number:.0f}" if 10.0**digits <= abs(number) < 1e6 else f"{number:.{digits}g}"
     return f"{text} {unit}" if unit else text
