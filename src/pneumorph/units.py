@@ -15,6 +15,8 @@ _NUMBER = r"[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][-+]?[0-9]++)?+"
 _UNIT = r"(?:[^\W\d]\w*+|[°%])(?:\s*+(?:\*\*|\^)\s*+[-+]?[0-9]{1,2}(?![0-9.]))?+"
 _QUANTITY = re.compile(rf"{_NUMBER}(?:\s*+(?:[*/]\s*+)?+(?:1\s*+/\s*+)?+(?:\(\s*+)?+{_UNIT}(?:\s*+\))?+)*+")
 
+EARTH = 9810.0  # mm/s2, gravity where nothing else is said
+
 # kind of quantity -> (unit used inside, unit used when printed)
 KINDS: dict[str, tuple[str, str]] = {
     "length": ("mm", "mm"),

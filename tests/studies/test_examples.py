@@ -252,6 +252,15 @@ def test_the_ground_bears_the_crawler_and_each_cycle_takes_it_as_far():
 
 
 @pytest.mark.slow
+def test_the_quadruped_goes_forward_in_both_pushes_and_over_the_cycle():
+    history = solved("quadruped.toml").history
+    place = np.interp(np.arange(3.0, 8.0), history.values("time"), history.values("centre_of_mass_x"))
+    first, _, second, _ = np.diff(place)
+    assert min(first, second) > 0.1
+    assert place[-1] - place[0] > 0.1
+
+
+@pytest.mark.slow
 def test_the_ends_of_the_arm_bear_what_the_finger_presses_and_the_skin_less_than_hurts():
     solution = solved("massage.toml")
     state, history = solution.states[-1], solution.history

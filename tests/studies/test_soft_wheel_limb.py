@@ -14,6 +14,7 @@ from pneumorph.mesh import generate
 from pneumorph.solution import solve
 from pneumorph.solution.history import Column, History
 from pneumorph.studies.reproductions import soft_wheel_limb as part
+from pneumorph.units import EARTH
 
 STUDY = part.LimbStudy(quick=True, limb=SoftLimb(chambers=2, length=55.0, half=True))
 
@@ -91,7 +92,7 @@ def test_a_held_foot_bears_the_weight_of_its_share_and_pressure_pushes_it_outwar
     reactions = settled.reactions.reshape(-1, 3).sum(axis=0)
     densities = {domain: material.density for domain, material in STUDY.materials.items()}
     mass = sum(densities[block.domain] * volume for block, volume in _volumes(case.model))
-    weight = mass * part.EARTH * np.array(STUDY.down)
+    weight = mass * EARTH * np.array(STUDY.down)
     assert reactions[[0, 2]] == pytest.approx(-weight[[0, 2]], rel=1e-4)
     force, outwards = (solution.history.values(key) for key in ("blocked_force", "force_from_axle"))
     assert force[-1] >= abs(outwards[-1])

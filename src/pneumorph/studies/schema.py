@@ -45,7 +45,7 @@ from pneumorph.studies.placing import TurnSection
 from pneumorph.studies.section import IMPORTED, LIBRARY, Section, quantity, section_of, write
 from pneumorph.studies.supplies import SUPPLY_SECTIONS, AtmosphereSection, SupplySection, TubeSection
 from pneumorph.studies.touching import BODY_SECTIONS, BodySection, ContactSection, Place
-from pneumorph.units import parse
+from pneumorph.units import EARTH, parse
 
 TEMPLATES: dict[str, type[Actuator]] = {
     "crawler-2d": PlaneCrawler,
@@ -194,7 +194,7 @@ class GravitySection(Section):
     """
 
     direction: Direction | None = None
-    acceleration: quantity("acceleration") = 9810.0  # type: ignore[valid-type]
+    acceleration: quantity("acceleration") = EARTH  # type: ignore[valid-type]
 
 
 class ClampSection(Section):

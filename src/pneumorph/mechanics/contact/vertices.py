@@ -12,11 +12,10 @@ from pneumorph.errors import NameNotFoundError, unknown_name
 from pneumorph.mechanics.contact.facets import Points, force_points, nodal_areas, split
 from pneumorph.mechanics.contact.free_body import Frame
 from pneumorph.mesh.mesh import FaceBlock, Mesh
+from pneumorph.units import EARTH
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-_GRAVITY = 9806.65  # standard gravity, mm/s2
 
 
 class Vertices:
@@ -98,7 +97,7 @@ class Vertices:
         bodies = self.bodies(names)
         if len(bodies) < len(names):
             return np.inf
-        return min(20.0 * body.mass * _GRAVITY / float(_areas(body, body.facets).sum()) for body in bodies)
+        return min(20.0 * body.mass * EARTH / float(_areas(body, body.facets).sum()) for body in bodies)
 
     def at(self, position: Array) -> Array:
         """Return the places (vertices, d) at positions (nodes, d) of the mesh."""

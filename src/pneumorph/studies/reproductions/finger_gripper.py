@@ -14,7 +14,7 @@ from pneumorph.studies.comparison import Comparison, Profile, Series
 from pneumorph.studies.reproductions.finger import SOURCE
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
-from pneumorph.units import show
+from pneumorph.units import EARTH, show
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,6 @@ SLIPPED = 5.0  # mm behind the holder from which the cup counts as lost
 CUP = ((0.0, 0.0), (21.0, 0.0), (25.69, 61.0), (28.0, 62.0), (28.0, 65.0), (24.5, 65.0), (19.5, 1.5), (0.0, 1.5))
 DEPTH = 115.0  # mm from the holder down to the table
 
-_GRAVITY = 9810.0  # mm/s2
 _REACH, _CREEP = 0.1, 0.05  # mm, mm/s: of the contact with the fingers
 _ABOVE = _REACH  # between the cup and the table at the start
 
@@ -47,10 +46,11 @@ def study(quick: bool) -> Study:
     fingers = range(1, len(gripper.cavities) + 1)
     skins = [f"{name}_{n}" for name in ("outer", "tip") for n in fingers]
     closed = dict.fromkeys(gripper.cavities, show(PRESSURE, "pressure"))
-    support = [{"type": "roller", "face": "clamp", "axis": axis} for axis in "xy"]
-    support.append({"type": "prescribed", "face": "clamp", "axis": "z", "name": "holder"})
-    support.append({"type": "symmetry", "face": "symmetry_y"})
-    support += [{"type": "roller", "face": "cup", "axis": axis} for axis in "xy"]
+    support = [
+        *({"type": "roller", "face": face, "axis": axis} for face in ("clamp", "cup") for axis in "xy"),
+        {"type": "prescribed", "face": "clamp", "axis": "z", "name": "holder"},
+        {"type": "symmetry", "face": "symmetry_y"},
+    ]
     step = 1.0 if quick else 0.5
     load = f"{OVERLOAD / share:.12g} N"
     table = {
@@ -84,7 +84,7 @@ def study(quick: bool) -> Study:
             {"name": "stand", "faces": ["cup"], "body": "table", "friction": FRICTION, "reach": show(_REACH, "length")},
         ],
         "phase": [
-            _phase(SETTLE, {"gravity": show(_GRAVITY, "acceleration")}, 0.5, first=0.2, largest=0.5),
+            _phase(SETTLE, {"gravity": show(EARTH, "acceleration")}, 0.5, first=0.2, largest=0.5),
             _phase(CLOSE, closed, 1.0, largest=0.1 * step),
             _phase(LIFT, {"holder": show(RISE, "length")}, 1.0, largest=0.2 * step),
             _phase(HOLD, {"holder": show(RISE, "length")}, 1.0, first=0.3, largest=0.5),
@@ -106,7 +106,7 @@ def compare(solution: Solution, study: Study) -> tuple[Comparison, ...]:
     if len(closed):
         radial = _radial(solution, study)[closed[-1]]
     largest = _largest(solution, share)
-    grams = "" if largest is None else f", a mass of {1e6 * largest / _GRAVITY:.0f} g"
+    grams = "" if largest is None else f", a mass of {1e6 * largest / EARTH:.0f} g"
     return (
         Comparison("small cup lifted", at, 1.0, lifted, "", "1: lifted off the table and held; reported: lifted"),
         Comparison("rise of the cup", raised, None, rise, "mm", "from where it stood on the table"),
@@ -129,7 +129,7 @@ def profiles(solution: Solution, study: Study) -> tuple[Profile, ...]:
     result = [Profile("lift", "Holder and cup", "time [s]", "way up [mm]", ways)]
     share, last = _share(study.actuator), solution.history.during(LOAD)
     if last.any():
-        asked = MASS * _GRAVITY + share * solution.history.values("value:load")[last]
+        asked = MASS * EARTH + share * solution.history.values("value:load")[last]
         carried = -share * solution.history.values("contact_force_z:grip")[last]
         lines = (Series("carried by the fingers", asked, carried), Series("all of it", asked, asked))
         result.append(Profile("carried", "Until the cup slips out", "weight and load [N]", "force [N]", lines))

@@ -26,7 +26,7 @@ from pneumorph.studies.reproductions.hexagonal_expansion import (
 )
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
-from pneumorph.units import show
+from pneumorph.units import EARTH, show
 
 NAME = "hexagonal-prism-anchoring"
 PIPE = "pipe"
@@ -35,7 +35,6 @@ FRICTION = 0.7  # assumed
 # reported: tilt, degrees -> least pressure that holds, MPa
 REPORTED = {0.0: 0.160, 30.0: 0.175, 60.0: 0.195, 90.0: 0.225}
 _STEPS = {tilt: held - REPORTED[0.0] for tilt, held in REPORTED.items()}
-_G = 9810.0  # mm/s2
 _REACH = "0.1 mm"
 
 
@@ -58,7 +57,7 @@ def study(quick: bool) -> Study:
 def weight(model: Model) -> float:
     """Return the weight of the whole prism, N: that of the modelled part and its images."""
     images = 2 ** sum(isinstance(support, Symmetry) for support in model.supports)
-    return images * _G * float(nodal_mass(model).sum())
+    return images * EARTH * float(nodal_mass(model).sum())
 
 
 def holding_pressure(

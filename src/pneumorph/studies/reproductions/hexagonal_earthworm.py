@@ -12,6 +12,7 @@ from pneumorph.studies.reproductions.hexagonal_expansion import DIAMETER, SOURCE
 from pneumorph.studies.reproductions.pipe_gaits import FEET, PIPE, cycle_rows, in_pipe, motion, phases_and_cycle
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
+from pneumorph.units import EARTH
 
 NAME = "hexagonal-prism-earthworm"
 # MPa: what presses an end against the pipe, and what lengthens the bellows
@@ -22,7 +23,7 @@ def study(quick: bool) -> Study:
     """Return the study: a quarter of a short robot climbs twice, or quickly once on a coarser mesh in larger steps."""
     step = 0.25 if quick else 0.1
     ramp: dict[str, Any] = {"duration": 10.0, "inertia": "quasi-static", "first": step, "largest": step}
-    settle = (Phase("gravity", {"gravity": 9810.0}, **ramp),)
+    settle = (Phase("gravity", {"gravity": EARTH}, **ramp),)
     rear, front = (tuple(f"{end}_{number}" for number in (1, 2)) for end in FEET)
     gait = earthworm(rear, "middle", front, GRIP, STRETCH, settle=settle, cycles=1 if quick else 2, **ramp)
     return study_from(_table(gait, quick), NAME)

@@ -18,7 +18,7 @@ from pneumorph.studies.reproductions.hexagonal_expansion import SOURCE, mirrors,
 from pneumorph.studies.reproductions.pipe_gaits import FEET, PIPE, cycle_rows, in_pipe, motion, phases_and_cycle
 from pneumorph.studies.reproductions.reproduction import Reproduction, register
 from pneumorph.studies.study import Study, study_from
-from pneumorph.units import show
+from pneumorph.units import EARTH, show
 
 NAME = "hexagonal-prism-inchworm"
 DIAMETER = 115.0  # mm, bore of the second test pipe
@@ -35,7 +35,7 @@ def study(quick: bool) -> Study:
     """Return the study: half a robot of two long chambers a row goes through one cycle, quickly in larger steps."""
     step = 0.125 if quick else 0.0625
     slow: dict[str, Any] = {"duration": 10.0, "inertia": "quasi-static"}
-    settle = (Phase("gravity", {"gravity": 9810.0}, first=0.5, largest=0.5, **slow),)
+    settle = (Phase("gravity", {"gravity": EARTH}, first=0.5, largest=0.5, **slow),)
     gait = inchworm((REAR,), "middle", (FRONT,), BEND, STRETCH, settle=settle, first=step, largest=step, **slow)
     return study_from(_table(_hastened(gait, 2.0 * step)), NAME)
 

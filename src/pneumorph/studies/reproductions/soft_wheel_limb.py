@@ -31,6 +31,7 @@ from pneumorph.mechanics.supports import Support
 from pneumorph.mesh import Mesh, generate
 from pneumorph.solution import Measure, Solution
 from pneumorph.studies.comparison import Comparison, ReportedCurve
+from pneumorph.units import EARTH
 
 Array = NDArray[np.float64]
 
@@ -42,7 +43,6 @@ CASES = {
 CAVITY, PRESSURE = "cavity", "pressure:cavity"
 FULL, HIGHEST = 0.030, 0.050  # MPa
 FOOT_LOAD = 1.25  # N
-EARTH = 9810.0  # mm/s2
 UNEVEN = 0.10  # spread of the chambers' growth from which they count as uneven (assumed)
 WHEEL_PRESSURES = {"neutral": 0.0, "half": 0.5 * FULL, "full": FULL}
 
