@@ -47,7 +47,7 @@ def test_all_parts_are_run_and_their_rows_stand_in_one_comparison(pneumorph, sph
     spheres()
     out = tmp_path / "run"
     assert pneumorph("reproduce", "spheres", "--quick", "--out", out).exit_code == 0
-    assert [row.quantity for row in read_comparison(out)] == ["main", "further"]
+    assert [row.quantity for row in read_comparison(out)] == ["main", "more: further"]
     assert [row.quantity for row in read_comparison(out / "more")] == ["further"]
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "see more/report.html" in page
@@ -55,7 +55,7 @@ def test_all_parts_are_run_and_their_rows_stand_in_one_comparison(pneumorph, sph
 
     written = pneumorph("report", out)
     assert written.exit_code == 0
-    assert [row.quantity for row in read_comparison(out)] == ["main", "further"]
+    assert [row.quantity for row in read_comparison(out)] == ["main", "more: further"]
 
     again = pneumorph("reproduce", "spheres", "--quick", "--out", out)
     assert again.exit_code == 2
@@ -79,7 +79,7 @@ def test_a_part_that_stops_does_not_keep_the_others_from_being_run(pneumorph, sp
     out = tmp_path / "run"
     assert pneumorph("reproduce", "spheres", "--out", out).exit_code == 3
     assert (out / "report.html").exists()
-    assert [row.quantity for row in read_comparison(out)] == ["main", "further"]
+    assert [row.quantity for row in read_comparison(out)] == ["main", "more: further"]
 
 
 def test_unknown_parts_and_options_are_refused(pneumorph, spheres):

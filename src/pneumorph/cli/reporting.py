@@ -6,6 +6,7 @@ What is reported with is imported when it is needed: drawing libraries take seco
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from pneumorph.errors import StorageError
@@ -29,7 +30,8 @@ def report_reproduction(solution: Solution, chosen: Reproduction, study: Study) 
     rows, notes = list(chosen.compare(solution, study)), list(chosen.notes)
     for label, name in chosen.parts.items():
         if name != chosen.name and solution.folder is not None:
-            rows += read_comparison(solution.folder / label)
+            own = read_comparison(solution.folder / label)
+            rows += [replace(row, quantity=f"{label}: {row.quantity}") for row in own]
             notes.append(f"{reproduction(name).title}: see {label}/report.html in the folder of this run.")
     return write_report(
         solution,
