@@ -105,15 +105,21 @@ def to_printed(value: float, kind: str) -> float:
     return value * _factor(kind)
 
 
+def plain(number: float, digits: int = 4) -> str:
+    """Return a number as text with so many digits; up to a million all those before the point are shown.
+
+    >>> plain(1400.0, 3), plain(0.12345, 3)
+    ('1400', '0.123')
+    """
+    return f"{number:.0f}" if 10.0**digits <= abs(number) < 1e6 else f"{number:.{digits}g}"
+
+
 def show(value: float, kind: str, digits: int = 4) -> str:
-    """Return an inside value as text with its printed unit; up to a million, digits before the point are all shown.
+    """Return an inside value as text with its printed unit, see `plain`.
 
     >>> show(0.08, "pressure")
     '80 kPa'
-    >>> show(1400.0, "time", 3)
-    '1400 s'
     """
     unit = printed_unit(kind)
-    number = to_printed(value, kind)
-    text = f"{number:.0f}" if 10.0**digits <= abs(number) < 1e6 else f"{number:.{digits}g}"
+    text = plain(to_printed(value, kind), digits)
     return f"{text} {unit}" if unit else text

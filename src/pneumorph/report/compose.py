@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from pneumorph.report import style
+from pneumorph.units import plain
 
 Picture = NDArray[np.uint8]
 
@@ -104,7 +105,7 @@ def _draw_bar(figure: Figure, bar: Bar, total: tuple[int, int], left: int, size:
     axes.tick_params(labelsize=size - 1)
     axes.set_ylabel(bar.title, fontsize=size, labelpad=8)
     if capped:
-        axes.set_title(f"max {bar.largest:.3g}", fontsize=size - 1.5, loc="left", fontweight="normal", pad=22)
+        axes.set_title(f"max {plain(bar.largest, 3)}", fontsize=size - 1.5, loc="left", fontweight="normal", pad=22)
 
 
 def encode(picture: Picture, form: str = "png") -> bytes:
