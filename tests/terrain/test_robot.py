@@ -82,7 +82,7 @@ def test_impossible_wheels_are_refused(change, message):
     ("change", "message"),
     [
         ({"mass": -1.0}, "rover: mass = -1e\\+09 mg, expected more than 0"),
-        ({"wheel_mass": 125e-6}, "wheel_mass = 1.25e\\+05 mg, expected less than a quarter of the mass"),
+        ({"wheel_mass": 125e-6}, "wheel_mass = 125000 mg, expected less than a quarter of the mass"),
         ({"track": 335.0}, "larger than the track: width 40 mm, expected less than 35 mm"),
         ({"wheelbase": 270.0}, "larger than the wheelbase: diameter 280 mm, expected less than 270 mm"),
         ({"height": 280.0}, "height = 280 mm, expected less than the wheels' diameter, 280 mm"),
